@@ -12,24 +12,24 @@ from hybrid_rl.types import EnvState
 NAME = "sensor_noise"  # in `info`: the data of a key, uint32
 
 
-def begin(state: EnvState, std: tuple[float, ...], key: Array, name: str = NAME) -> EnvState:
+def begin(state: EnvState, std: tuple[float, ...], key: Array) -> EnvState:
     """The first state of an episode with noise of `std` [o], or one for all entries, on its obs.
 
-    Without noise `state` is returned unchanged. name: of the entry in `info`. The key is consumed.
+    Without noise `state` is returned unchanged. The key is consumed.
     """
-    return state if not any(std) else _observed(state, std, key, name)
-
-
-def resume(state: EnvState, std: tuple[float, ...], before: EnvState, name: str = NAME) -> EnvState:
-    """The state after `before` with new noise on its observation."""
     if not any(std):
         return state
-    return _observed(state, std, jax.random.wrap_key_data(before.info[name]), name)
+    obs, later = added(state.obs, std, key)
+    return state.replace(obs=obs, info={**state.info, NAME: later})
 
 
-def _observed(state: EnvState, std: tuple[float, ...], key: Array, name: str) -> EnvState:
+def resume(state: EnvState, std: tuple[float, ...], before: EnvState) -> EnvState:
+    """The state after `before` with new noise on its observation."""
+    return begin(state, std, jax.random.wrap_key_data(before.info[NAME])) if any(std) else state
+
+
+def added(obs: Array, std: tuple[float, ...], key: Array) -> tuple[Array, Array]:
+    """obs [o] with noise, and the data of the next key. The key is consumed."""
     now, later = jax.random.split(key)
-    scale = jnp.broadcast_to(jnp.asarray(std, state.obs.dtype), state.obs.shape)
-    noise = scale * jax.random.normal(now, state.obs.shape, state.obs.dtype)
-    info = {**state.info, name: jax.random.key_data(later)}
-    return state.replace(obs=state.obs + noise, info=info)
+    scale = jnp.broadcast_to(jnp.asarray(std, obs.dtype), obs.shape)
+    return obs + scale * jax.random.normal(now, obs.shape, obs.dtype), jax.random.key_data(later)

@@ -92,7 +92,7 @@ def record(
     return Recording(
         Transition(*(row[lived] for row in rows)),
         np.nonzero(lived)[0],
-        states.info["return"][:, -1],
+        states.clock.total[:, -1],
         None if success is None else success[:, -1],
     )
 

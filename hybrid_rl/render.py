@@ -94,7 +94,7 @@ def film(world: Any, controller: Any, params: Any, key: Any) -> Film:
     def go(params: Any, key: Any) -> tuple:
         states = rollout(world, controller, params, key, world.steps)
         poses = jax.vmap(pose_of(world.env))(states)
-        return poses, states.done, states.info["return"], states.metrics.get("success")
+        return poses, states.done, states.clock.total, states.metrics.get("success")
 
     poses, done, returns, success = jax.jit(go)(params, key)
     last = int(np.argmax(done)) if np.any(done) else world.steps

@@ -41,6 +41,18 @@ class Spec(NamedTuple):
         return self.obs if self.state is None else self.state
 
 
+class Clock(NamedTuple):
+    """What an episode counts and remembers since its reset; None: what it has no use for."""
+
+    decision: Array  # [] int32
+    total: Array  # [] the return: rewards without discount, and without a constraint's price
+    violations: Any = None  # [] of the constraint
+    late: Any = None  # [delay, m] actions that are to arrive
+    true_obs: Any = None  # [o] the observation before noise
+    sensing: Any = None  # data of the key of the next noise of the sensors
+    disturbing: Any = None  # data of the key of the next noise of an action
+
+
 @struct.dataclass
 class EnvState:
     """The state of an environment between two decisions (a superset of Brax's fields)."""
@@ -52,6 +64,7 @@ class EnvState:
     truncated: Array  # [] bool: only the time limit ended the episode
     metrics: dict[str, Array] = field(default_factory=dict)  # name -> [], logged; or success
     info: dict[str, Array] = field(default_factory=dict)  # the task's own memory
+    clock: Any = None  # the Clock of the episode; None: of a world alone
 
     @property
     def done(self) -> Array:

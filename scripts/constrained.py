@@ -65,7 +65,7 @@ def measured(trained: Trained, controller: Any, episodes: int) -> dict[str, Any]
         carry = begin(trained.episode, controller, keys)
         steps = jnp.int32(trained.episode.steps)
         env, *_ = advance(trained.episode, controller, params, carry, steps)
-        return {**scores(env), "decisions": env.info["decision"]}
+        return {**scores(env), "decisions": env.clock.decision}
 
     got = every(trained, episodes, one)
     return {name: each.mean(1) for name, each in got.items()}

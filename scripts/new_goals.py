@@ -155,7 +155,7 @@ def measured(
                 episode, acts, params, begin(episode, acts, keys), jnp.int32(episode.steps)
             )
             if isinstance(acts, Watched):
-                return control[1] / env.info["decision"]
+                return control[1] / env.clock.decision
             return scores(env)["return"]
 
         return jax.vmap(on, (0, 0 if own else None))(jnp.arange(len(known)), params)

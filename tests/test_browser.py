@@ -95,7 +95,7 @@ def episodes(episode: Episode, controller, params) -> tuple[Array, Array, Array]
 
         last, (obs, rewards) = jax.lax.scan(decide, first, length=episode.steps)
         obs = jnp.concatenate([first.obs[None], obs[:EXACT]])
-        return obs, rewards[:EXACT], last.info["return"]
+        return obs, rewards[:EXACT], last.clock.total
 
     return jax.vmap(one)(robots.keys()[:EPISODES])
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from tiny import rows_of, run
 
-from hybrid_rl.core import adjoint, sampling
+from hybrid_rl.core import adjoint, rollout
 
 RANDOM = 400  # decisions: two episodes
 MODEL = [
@@ -45,7 +45,7 @@ CASES = {  # method -> decisions, settings
 @pytest.fixture
 def rolled(monkeypatch):
     """Loops over a horizon are not unrolled: a long one compiles as fast as a short one."""
-    for module in (adjoint, sampling):
+    for module in (adjoint, rollout):
         monkeypatch.setattr(module, "scan_unroll", lambda *_: 1)
 
 

@@ -19,27 +19,19 @@ of its loop, as the response to a correction may begin in the wrong direction.
 
 import math
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import adjoint, decay, lyapunov, sampling
+from hybrid_rl.core import adjoint, decay, lyapunov
+from hybrid_rl.core.sampling import Kept
 from hybrid_rl.fields import Count, FieldError, Positive, Share, part
 from hybrid_rl.protocols import Model, Objective, Policy, StabilizingPolicy
 from hybrid_rl.types import Params, Path, Return, Room, Spec
 
 WINDOWS = 8  # values of tau, and of lambda, that a search compares
-
-
-class AdjointState(NamedTuple):
-    """The planner's state between two decisions."""
-
-    v: Array  # [T, m] corrections from the previous decision on
-    u: Array  # [m] the previous action
-    count: Array  # [] decisions of the episode so far
-    memory: Any  # of the objective
 
 
 @part
@@ -65,26 +57,26 @@ class AdjointController:
         if self.gain is None and self.policy is None:
             raise FieldError(self, "gain", "needs a policy, whose variance it takes")
 
-    def init(self, spec: Spec) -> AdjointState:
+    def init(self, spec: Spec) -> Kept:
         """No correction, and the objective's initial memory."""
         room = self._room()
         T = max(self.horizon, math.ceil(2 * room.time)) if room else self.horizon
         v = jnp.zeros((T, spec.act))
         none = jnp.zeros((), jnp.int32)
-        return AdjointState(v, v[0], none, self.objective.init(spec))
+        return Kept(v, v[0], self.objective.init(spec), none)
 
     def act(
-        self, params: Params, state: AdjointState, obs: Array, key: Array
-    ) -> tuple[Array, AdjointState, dict[str, Array]]:
+        self, params: Params, state: Kept, obs: Array, key: Array
+    ) -> tuple[Array, Kept, dict[str, Array]]:
         """Action [m], next state, metrics. The key is consumed."""
         prepare_key = jax.random.split(key)[0]  # keeps the random numbers of version 0.1
         x = self.model.lift(params.model, obs)
         value, memory = self.objective.prepare(params, state.memory, x, state.u, prepare_key)
-        factor = self.gain_decay**state.count * decay.of_run(self.run_decay, params.decisions)
-        plan = _Plan(self, params, value, x, state.v.shape[1], factor)
-        due = (self.apply == "first") | (state.count % len(state.v) == 0)
-        rest = sampling.shift(state.v)
-        held = rest if self.warm_start else jnp.where(due, 0, rest)
+        count = state.more  # decisions of the episode so far
+        factor = self.gain_decay**count * decay.of_run(self.run_decay, params.decisions)
+        plan = _Plan(self, params, value, x, state.plan.shape[1], factor)
+        due = (self.apply == "first") | (count % len(state.plan) == 0)
+        held = state.plan if self.warm_start else jnp.where(due, 0, state.plan)
         if self.apply == "first":
             v = plan.improve(held)
         else:
@@ -93,7 +85,7 @@ class AdjointController:
         metrics = plan.metrics(v)
         if covered := getattr(self.objective, "covered", None):
             metrics |= covered(params, state.memory, x, prepare_key)
-        return u, AdjointState(v, u, state.count + 1, memory), metrics
+        return u, state.later(v, u, memory)._replace(more=count + 1), metrics
 
     def _room(self) -> Room | None:
         """What corrections may be, of the regulator of an unstable system."""

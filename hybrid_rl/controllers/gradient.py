@@ -30,15 +30,16 @@ step by its root mean square and the prices are our choice.
 """
 
 from functools import partial
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import adjoint, agreement, sampling
+from hybrid_rl.core import agreement
 from hybrid_rl.core.batching import join, prepend
-from hybrid_rl.core.members import predict_members
+from hybrid_rl.core.rollout import Priced, predict_members, priced
+from hybrid_rl.core.sampling import Kept
 from hybrid_rl.fields import (
     Count,
     Discount,
@@ -51,7 +52,7 @@ from hybrid_rl.fields import (
     part,
 )
 from hybrid_rl.protocols import Constraint, Model, Objective, Policy
-from hybrid_rl.types import Considered, Params, Path, Return, Spec
+from hybrid_rl.types import Considered, Params, Return, Spec
 
 
 class Candidate(NamedTuple):
@@ -61,23 +62,11 @@ class Candidate(NamedTuple):
     v: Array  # [T, m]
 
 
-class GradientState(NamedTuple):
-    """The planner's state between two decisions."""
+class Risk(NamedTuple):
+    """How likely decisions violate the constraint, and how far."""
 
-    plan: Candidate  # from the next decision on
-    u: Array  # [m] the previous action
-    memory: Any  # of the objective
-
-
-class Scored(NamedTuple):
-    """A candidate in the model."""
-
-    score: Array  # [] S
-    value: Array  # [] J
-    disagreement: Array  # [] sum over time
-    risk: Array  # [] the largest probability of a violation before the tail
-    beyond: Array  # [] distance beyond the limit, until then [widths]; above 0, as it is smooth
-    path: Path  # x [T+tail+1, n], u [T+tail, m]
+    risk: Array  # [] the probability of a violation; of a plan the largest before the tail
+    beyond: Array  # [] distance beyond the limit [widths], the sum of a plan's; smooth: above 0
 
 
 @part
@@ -108,21 +97,21 @@ class GradientController:
             words = "has no gradients; choose model=exact, or one that learns, such as ensemble"
             raise FieldError(self, "model", words)
 
-    def init(self, spec: Spec) -> GradientState:
+    def init(self, spec: Spec) -> Kept:
         """No corrections, and the objective's initial memory."""
         v = jnp.zeros((self.horizon, spec.act))
         first = jnp.float32(self.strengths[0] if self.policy is not None else 0.0)
-        return GradientState(Candidate(first, v), v[0], self.objective.init(spec))
+        return Kept(v, v[0], self.objective.init(spec), first)
 
     def act(
-        self, params: Params, state: GradientState, obs: Array, key: Array
-    ) -> tuple[Array, GradientState, dict[str, Array]]:
+        self, params: Params, state: Kept, obs: Array, key: Array
+    ) -> tuple[Array, Kept, dict[str, Array]]:
         """Action [m], next state, metrics. The key is consumed."""
         return self.considered(params, state, obs, key)[:3]
 
     def considered(
-        self, params: Params, state: GradientState, obs: Array, key: Array
-    ) -> tuple[Array, GradientState, dict[str, Array], Considered]:
+        self, params: Params, state: Kept, obs: Array, key: Array
+    ) -> tuple[Array, Kept, dict[str, Array], Considered]:
         """As `act`, and the candidates: what acts, then the refined, their starts, the drawn."""
         preparing, drawing = jax.random.split(key)
         x = self.model.lift(params.model, obs)
@@ -131,7 +120,8 @@ class GradientController:
         drawn = self._drawn(state, drawing)
         first = score(drawn)
         best = jax.lax.top_k(self._rank(first), min(self.refined, self.samples))[1]
-        starts = prepend(state.plan, jax.tree.map(lambda leaf: leaf[best], drawn))
+        last = Candidate(state.more, state.plan)
+        starts = prepend(last, jax.tree.map(lambda leaf: leaf[best], drawn))
         refined = self._refined(params, value, x, starts)
         each = join(refined, starts)
         found = score(each)
@@ -140,7 +130,7 @@ class GradientController:
         plan, chosen = self._surely(params, value, x, plan, chosen)
         u = chosen.path.u[0]
         gain = found.score[: len(starts.s)].max() - found.score[len(starts.s) :].max()
-        risk = {} if self.constraint is None else {"planner/risk": chosen.risk}
+        risk = {} if self.constraint is None else {"planner/risk": chosen.notes.risk}
         metrics = {
             "planner/planned_return": chosen.value,
             "planner/disagreement": chosen.disagreement / (self.horizon + self.tail),
@@ -149,7 +139,7 @@ class GradientController:
             **risk,
             **self._agreement(params, value, x, u),
         }
-        after = GradientState(Candidate(plan.s, sampling.shift(plan.v)), u, memory)
+        after = state.later(plan.v, u, memory)._replace(more=plan.s)
         paths = prepend(chosen.path, join(found.path, first.path))
         return u, after, metrics, Considered(paths, jnp.int32(0))
 
@@ -157,10 +147,10 @@ class GradientController:
         """The same controller: the best candidate acts."""
         return self
 
-    def _drawn(self, state: GradientState, key: Array) -> Candidate:
+    def _drawn(self, state: Kept, key: Array) -> Candidate:
         """Candidates [K, ...] with the strengths in turn. The key is consumed."""
         K, c = self.samples, self.correlation
-        e = jax.random.normal(key, (self.horizon, K, state.plan.v.shape[1]))
+        e = jax.random.normal(key, (self.horizon, K, state.plan.shape[1]))
 
         def along(before: Array, new: Array) -> tuple[Array, Array]:
             now = c * before + jnp.sqrt(1 - c**2) * new
@@ -171,12 +161,12 @@ class GradientController:
         number, count = jnp.arange(K), len(each)
         loud = number // count >= self.quiet * K / count
         if self.policy is None:  # around the last plan
-            return Candidate(jnp.zeros(K), state.plan.v[None] + self.noise * e)
+            return Candidate(jnp.zeros(K), state.plan[None] + self.noise * e)
         return Candidate(each[number % count], self.noise * e * loud[:, None, None])
 
     def _surely(
-        self, params: Params, value: Return, x: Array, plan: Candidate, chosen: Scored
-    ) -> tuple[Candidate, Scored]:
+        self, params: Params, value: Return, x: Array, plan: Candidate, chosen: Priced
+    ) -> tuple[Candidate, Priced]:
         """The plan at x [n], or the policy's own where the members doubt that it gains."""
         if self.policy is None or self.doubt is None or self.constraint is not None:
             return plan, chosen
@@ -194,48 +184,40 @@ class GradientController:
 
     def _scored(
         self, params: Params, value: Return, x: Array, one: Candidate, member: Array | None = None
-    ) -> Scored:
+    ) -> Priced:
         """The candidate from x [n], by the mean of the ensemble or by one member."""
         v = jnp.concatenate([one.v, jnp.zeros((self.tail, one.v.shape[1]))])
 
-        def forward(x: Array, v: Array) -> tuple[Array, tuple[Array, ...]]:
+        def act(x: Array, v: Array) -> Array:
             u = v
             if self.policy is not None:
                 u = one.s * self.policy.mean(params.policy, x) + v
-            u = jnp.clip(u, -1, 1)
-            after, apart, each = predict_members(self.model, params.model, x, u)
-            after = after if member is None else each[member]
-            return after, (after, u, jnp.mean(apart), *self._risk(x, u, each))
+            return jnp.clip(u, -1, 1)
 
-        _, ahead = jax.lax.scan(forward, x, v, unroll=adjoint.scan_unroll(len(v)))
-        xs, us, apart, risk, beyond = ahead
-        path = Path(jnp.concatenate([x[None], xs]), us)
-        J = value(path)
-        score = J - self.disagreement_price * apart.sum()
-        if self.constraint is not None and not self.priced:
-            score = score - self.constraint.price * risk.sum()
-        finite, T = jnp.isfinite(score), self.horizon
-        far = jnp.where(finite, beyond[:T].sum(), jnp.inf)
-        score = jnp.where(finite, score, -jnp.inf)
-        return Scored(score, J, apart.sum(), risk[:T].max(), far, path)
+        model, price = self.model, self.disagreement_price
+        found = priced(model, params.model, value, price, act, x, v, member, self._risk)
+        far, T = jnp.where(jnp.isfinite(found.score), found.notes.beyond, jnp.inf), self.horizon
+        return found._replace(notes=Risk(found.notes.risk[:T].max(), far[:T].sum()))
 
-    def _risk(self, x: Array, u: Array, each: Array) -> tuple[Array, Array]:
-        """The probability [] that u [m] at x [n] violates the constraint, and how far [] [widths].
+    def _risk(self, x: Array, u: Array, each: Array) -> tuple[Array, Risk]:
+        """The cost [] of violating the constraint by u [m] at x [n], and the risk of it.
 
         each: [members, n] the predicted next states.
         """
-        limit = self.constraint
+        limit, none = self.constraint, jnp.zeros(())
         if limit is None:
-            return jnp.zeros(()), jnp.zeros(())
+            return none, Risk(none, none)
         far = jax.vmap(lambda after: limit.excess(x, u, after) / limit.width)(each) + self.margin
-        return jax.nn.sigmoid(far).mean(), jax.nn.softplus(far).mean()
+        chance = jax.nn.sigmoid(far).mean()
+        cost = 0 * chance if self.priced else limit.price * chance
+        return cost, Risk(chance, jax.nn.softplus(far).mean())
 
-    def _rank(self, found: Scored) -> Array:
+    def _rank(self, found: Priced) -> Array:
         """Numbers [K] in the order of the candidates: the largest is that of the best."""
         if self.constraint is None or self.constraint.chance is None:
             return found.score
-        safe = (found.risk <= self.constraint.chance) & jnp.isfinite(found.score)
-        order = jnp.lexsort((found.score, jnp.where(safe, 0.0, -found.beyond), safe))
+        safe = (found.notes.risk <= self.constraint.chance) & jnp.isfinite(found.score)
+        order = jnp.lexsort((found.score, jnp.where(safe, 0.0, -found.notes.beyond), safe))
         return jnp.argsort(order)
 
     def _refined(self, params: Params, value: Return, x: Array, starts: Candidate) -> Candidate:

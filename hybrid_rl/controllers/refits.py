@@ -5,34 +5,24 @@
 
 over the `elites` best candidates, whose S is divided by their standard deviation, so that lambda
 is a pure number. S is the predicted return less a price for the ensemble's disagreement, as in
-controllers.gradient. The mean acts; the last plan is where the next one begins.
+core.rollout. The mean acts; the last plan is where the next one begins.
 
 Source: the planner of TD-MPC2 (Hansen et al. 2024), which is MPPI (Williams et al. 2017) with the
 elites of the cross-entropy method; there with a critic at the end of a short horizon.
 """
 
 from functools import partial
-from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import adjoint, lifting, sampling
-from hybrid_rl.core.batching import prepend
-from hybrid_rl.core.members import predict_members
+from hybrid_rl.core import lifting, sampling
+from hybrid_rl.core.rollout import priced
+from hybrid_rl.core.sampling import Candidates, Kept
 from hybrid_rl.fields import Count, FieldError, Fraction, NotNegative, Positive, part
 from hybrid_rl.protocols import Model, Objective, Proposal
-from hybrid_rl.types import Params, Path, Return, Spec
-
-
-class RefitsState(NamedTuple):
-    """The planner's state between two decisions."""
-
-    plan: Array  # [T, m]
-    carries: Any  # [share K, ...] of the proposal; None without
-    u: Array  # [m] the previous action
-    memory: Any  # of the objective
+from hybrid_rl.types import Params, Spec
 
 
 @part
@@ -56,74 +46,54 @@ class RefitsController:
         if self.elites > self.samples:
             raise FieldError(self, "elites", f"must be at most samples={self.samples}")
 
-    def init(self, spec: Spec) -> RefitsState:
+    def init(self, spec: Spec) -> Kept:
         """A plan of zeros, and the initial carries and memory."""
         plan, carries = jnp.zeros((self.horizon, spec.act)), None
-        if (proposal := self.proposal) is not None and self._own:
-            quantiles = jnp.arange(self._own) / self._own
-            carries = jax.vmap(lambda q: proposal.init(spec, q))(quantiles)
-        return RefitsState(plan, carries, plan[0], self.objective.init(spec))
+        if (own := self._own) is not None:
+            carries = own.begin(spec)
+        return Kept(plan, plan[0], self.objective.init(spec), carries)
 
     def act(
-        self, params: Params, state: RefitsState, obs: Array, key: Array
-    ) -> tuple[Array, RefitsState, dict[str, Array]]:
+        self, params: Params, state: Kept, obs: Array, key: Array
+    ) -> tuple[Array, Kept, dict[str, Array]]:
         """Action [m], next state, metrics. The key is consumed."""
         preparing, rolling, drawing = jax.random.split(key, 3)
         x = lifting.start(self.model, params, obs)
         value, memory = self.objective.prepare(params, state.memory, x, state.u, preparing)
         own = self._proposed(params, state, x, rolling)
-        score = jax.vmap(lambda v: self._score(params, value, x, v))
+        price, follow = self.disagreement_price, lambda x, u: u
+        score = jax.vmap(lambda v: priced(self.model, params.model, value, price, follow, x, v))
 
         def refit(fit: tuple[Array, Array], key: Array) -> tuple[tuple[Array, Array], Array]:
             mu, sigma = fit
             e = jax.random.normal(key, (self.samples - len(own), *mu.shape))
             v = jnp.concatenate([own, jnp.clip(mu[None] + sigma[None] * e, -1, 1)])
-            S, J = score(v)
-            S, best = jax.lax.top_k(S, self.elites)
+            found = score(v)
+            S, best = jax.lax.top_k(found.score, self.elites)
             w = sampling.weights(S[:, None], self.temperature, normalise=True)[:, 0]
             v = sampling.kept(w[:, None, None], v[best])
             mu = jnp.einsum("k,ktm->tm", w, v)
             variance = jnp.einsum("k,ktm->tm", w, (v - mu[None]) ** 2)
-            return (mu, jnp.clip(jnp.sqrt(variance), self.floor, self.spread)), J[best[0]]
+            return (mu, jnp.clip(jnp.sqrt(variance), self.floor, self.spread)), found.value[best[0]]
 
         first = state.plan, jnp.full_like(state.plan, self.spread)
         (plan, sigma), J = jax.lax.scan(refit, first, jax.random.split(drawing, self.refits))
         metrics = {"planner/planned_return": J[-1], "planner/spread": sigma[0].mean()}
-        begin = sampling.sound(plan, 0.0)
-        after = RefitsState(sampling.shift(begin), state.carries, begin[0], memory)
-        return plan[0], after, metrics
+        return plan[0], state.later(plan, plan[0], memory), metrics
 
     def greedy(self) -> "RefitsController":
         """The same controller: the mean acts."""
         return self
 
     @property
-    def _own(self) -> int:
-        """The number of candidates from the proposal."""
-        return 0 if self.proposal is None else round(self.share * self.samples)
+    def _own(self) -> Candidates | None:
+        """The candidates from the proposal; None: there are none."""
+        count = round(self.share * self.samples)
+        return Candidates(self.proposal, count) if self.proposal is not None and count else None
 
-    def _proposed(self, params: Params, state: RefitsState, x: Array, key: Array) -> Array:
+    def _proposed(self, params: Params, state: Kept, x: Array, key: Array) -> Array:
         """Plans [share K, T, m] of the proposal from x [n]. The key is consumed."""
-        if (proposal := self.proposal) is None or not self._own:
+        if (own := self._own) is None:
             return jnp.zeros((0, *state.plan.shape))
-        noise = jax.random.normal(key, (self._own, *state.plan.shape))
-        return sampling.imagine(
-            partial(self.model.step, params.model),
-            lambda carry, x, *a: proposal(params, carry, lifting.policy_input(x), *a),
-            state.carries,
-            x,
-            state.plan,
-            jax.vmap(proposal.shaped)(noise),
-        ).path.u
-
-    def _score(self, params: Params, value: Return, x: Array, v: Array) -> tuple[Array, Array]:
-        """S [] and J [] of a plan v [T, m] from x [n]."""
-
-        def forward(x: Array, u: Array) -> tuple[Array, tuple[Array, Array]]:
-            after, apart, _ = predict_members(self.model, params.model, x, u)
-            return after, (after, apart.mean())
-
-        _, (xs, apart) = jax.lax.scan(forward, x, v, unroll=adjoint.scan_unroll(len(v), x))
-        J = value(Path(prepend(x, xs), v))
-        score = J - self.disagreement_price * apart.sum()
-        return jnp.where(jnp.isfinite(score), score, -jnp.inf), J
+        step = partial(self.model.step, params.model)
+        return own.imagine(params, step, state.more, x, state.plan, key).path.u

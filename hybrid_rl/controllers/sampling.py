@@ -14,27 +14,19 @@ decision on; any other objective weighs all of them by J (Williams et al. 2017).
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from typing import Any, Literal, NamedTuple, cast
+from typing import Any, Literal, cast
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import agreement, lifting, sampling
+from hybrid_rl.core.sampling import Candidates, Kept
 from hybrid_rl.fields import Count, FieldError, Positive, Signed, part
 from hybrid_rl.protocols import Model, Objective, Policy, Proposal
 from hybrid_rl.types import Considered, EnvState, Params, Path, Spec
 
 ToGo = Callable[[Path], Array]  # path -> S [T+1], the return from each time on
-
-
-class SamplingState(NamedTuple):
-    """The planner's state between two decisions."""
-
-    plan: Array  # [T, m]
-    carries: Any  # [K, ...] of the proposal
-    u: Array  # [m] the previous action
-    memory: Any  # of the objective
 
 
 @part
@@ -59,36 +51,31 @@ class SamplingController:
             words = "needs candidates with a density; choose proposal=policy or proposal=noise"
             raise FieldError(self, "log_density", f"{words}, or false")
 
-    def init(self, spec: Spec) -> SamplingState:
+    def init(self, spec: Spec) -> Kept:
         """The plan of `rest`, and the initial carries and memory."""
-        quantiles = jnp.arange(self.samples) / self.samples
-        carries = jax.vmap(lambda q: self.proposal.init(spec, q))(quantiles)
         plan = jnp.full((self.horizon, spec.act), self.rest)
-        return SamplingState(plan, carries, jnp.zeros(spec.act), self.objective.init(spec))
+        memory, carries = self.objective.init(spec), self._candidates.begin(spec)
+        return Kept(plan, jnp.zeros(spec.act), memory, carries)
+
+    @property
+    def _candidates(self) -> Candidates:
+        return Candidates(self.proposal, self.samples)
 
     def act(
-        self, params: Params, state: SamplingState, obs: Array, key: Array
-    ) -> tuple[Array, SamplingState, dict[str, Array]]:
+        self, params: Params, state: Kept, obs: Array, key: Array
+    ) -> tuple[Array, Kept, dict[str, Array]]:
         """Action [m], next state, metrics. The key is consumed."""
         return self.considered(params, state, obs, key)[:3]
 
     def considered(
-        self, params: Params, state: SamplingState, obs: Array, key: Array
-    ) -> tuple[Array, SamplingState, dict[str, Array], Considered]:
+        self, params: Params, state: Kept, obs: Array, key: Array
+    ) -> tuple[Array, Kept, dict[str, Array], Considered]:
         """What `act` returns, and the candidates."""
         rolling, choosing = jax.random.split(key)
         x = lifting.start(self.model, params, obs)
         to_go, memory, rolling = self._to_go(params, state, x, rolling)
-        samples = sampling.imagine(
-            partial(self.model.step, params.model),
-            lambda carry, x, *a: self.proposal(params, carry, lifting.policy_input(x), *a),
-            state.carries,
-            x,
-            state.plan,
-            jax.vmap(self.proposal.shaped)(
-                jax.random.normal(rolling, (self.samples, *state.plan.shape))
-            ),
-        )
+        step = partial(self.model.step, params.model)
+        samples = self._candidates.imagine(params, step, state.more, x, state.plan, rolling)
         returns = jax.vmap(to_go)(samples.path)
         w = sampling.weights(
             returns[:, :-1],
@@ -107,17 +94,12 @@ class SamplingController:
         metrics = {
             "planner/effective_samples": sampling.effective_samples(w)[0],
             "planner/planned_return": w[:, 0] @ sampling.kept(w, returns[:, :-1])[:, 0],
-            **self._planned_reward(params, w[:, 0], samples.path),
             **self._agreement(params, x, plan, to_go),
         }
-        plan = sampling.shift(sampling.sound(plan, self.rest), self.rest)
-        u = sampling.sound(action, self.rest)
-        after = state._replace(plan=plan, u=u, memory=memory)
+        after = state.later(plan, action, memory, self.rest)
         return action, after, metrics, Considered(samples.path, jnp.argmax(w[:, 0]))
 
-    def _to_go(
-        self, params: Params, state: SamplingState, x: Any, key: Array
-    ) -> tuple[ToGo, Any, Array]:
+    def _to_go(self, params: Params, state: Kept, x: Any, key: Array) -> tuple[ToGo, Any, Array]:
         """S of paths from x [n], the objective's memory, and a key for other uses."""
         objective: Any = self.objective
         if hasattr(objective, "reward_to_go"):
@@ -125,15 +107,6 @@ class SamplingController:
         key, preparing = jax.random.split(key)
         value, memory = objective.prepare(params, state.memory, x, state.u, preparing)
         return lambda path: jnp.full(len(path.u) + 1, value(path)), memory, key
-
-    def _planned_reward(self, params: Params, w: Array, paths: Path) -> dict[str, Array]:
-        """The mean reward of the first decisions of paths [K, ...] with weights w [K]."""
-        objective: Any = self.objective
-        if not hasattr(objective, "rewards"):
-            return {}
-        first = Path(jax.tree.map(lambda leaf: leaf[:, :2], paths.x), paths.u[:, :1])
-        each = jax.vmap(lambda path: objective.rewards(params, path)[0])(first)
-        return {"planner/planned_reward": w @ sampling.kept(w, each)}
 
     def _agreement(self, params: Params, x: Any, plan: Array, to_go: ToGo) -> dict[str, Array]:
         """Metrics of the difference between the weighted mean and the policy's action.

@@ -15,9 +15,9 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import returns
-from hybrid_rl.core.batching import prepend
-from hybrid_rl.types import EnvState, Path, Return, Reward, Step
+from hybrid_rl.core import returns, rollout
+from hybrid_rl.core.rollout import scan_unroll
+from hybrid_rl.types import Path, Return, Reward, Step
 
 
 class Adjoint(NamedTuple):
@@ -28,33 +28,13 @@ class Adjoint(NamedTuple):
     gradient: Array  # g [T, m] [J / u]
 
 
-UNROLLED = 32  # longest loop that a GPU unrolls completely [decisions]
-TURNS = 4  # steps in a turn of other loops
-
-
-def scan_unroll(length: int, x: Any = None) -> int:
-    """The unroll factor of a loop of `length` steps from x; 1 on a world, which compiles slowly.
-
-    Each turn of a loop costs a GPU launches; XLA takes minutes to compile 120 steps, though. On a
-    CPU longer turns are slower, and where a step uses its state twice, XLA computes each of them
-    again for every use of its result: 2^length times.
-    """
-    if isinstance(x, EnvState):
-        return 1
-    whole = length <= UNROLLED and jax.default_backend() != "cpu"
-    return length if whole else min(length, TURNS)
-
-
 def roll(step: Step, policy: Callable[[Any], Array | float], x: Any, correction: Array) -> Path:
     """The path from x [n], or a tree of arrays, under `policy` plus `correction` v [T, m]."""
 
-    def forward(x: Any, v: Array) -> tuple[Any, tuple[Any, Array]]:
-        u = policy(x) + v
-        after = step(x, u)
-        return after, (after, u)
+    def act(_: None, x: Any, v: Array) -> tuple[Array, None, None]:
+        return policy(x) + v, None, None
 
-    xs, us = jax.lax.scan(forward, x, correction, unroll=scan_unroll(len(correction), x))[1]
-    return Path(prepend(x, xs), us)
+    return rollout.roll(lambda x, u: (step(x, u), None), act, x, correction).path
 
 
 def adjoint(

@@ -7,13 +7,14 @@ that the present policy leads to.
 """
 
 from collections.abc import Callable
+from typing import Any
 
 import jax
 import jax.numpy as jnp
 from flax import struct
 from jax import Array
 
-from hybrid_rl.core.batching import where
+from hybrid_rl.core.batching import repeat, where
 from hybrid_rl.core.statistics import FLOOR
 from hybrid_rl.protocols import Policy, Reward, Trainable
 from hybrid_rl.types import Batch, Params
@@ -28,7 +29,7 @@ class Branches:
 
     x: Array  # [B, n] the states that the branches have reached
     age: Array  # [B] int32 decisions of each branch so far
-    rows: Array  # [memory / B, B, width] the last transitions
+    rows: Batch  # [memory / B, B, ...] the last transitions; None: what nobody uses
     count: Array  # [] int32 updates so far
 
     def restarted(self) -> "Branches":
@@ -49,14 +50,21 @@ def transitions(params: Params, policy: Policy, model: Trainable, reward: Reward
     return one
 
 
-def begin(size: int, memory: int, n: int, m: int, steps: int) -> Branches:
-    """`size` branches that are to start at the next update; memory: transitions, a multiple."""
-    return Branches(
-        jnp.zeros((size, n)),
-        jnp.full(size, steps, jnp.int32),
-        jnp.zeros((memory // size, size, 2 * n + m + 2)),
-        jnp.zeros((), jnp.int32),
-    )
+def begin(size: int, memory: int, n: int, m: int, steps: int, whole: bool = True) -> Branches:
+    """`size` branches that are to start at the next update; memory: transitions, a multiple.
+
+    whole: false keeps the states and rewards of transitions alone.
+    """
+    x, none = jnp.zeros((size, n)), jnp.zeros(size)
+    row = _kept(Batch(x, jnp.zeros((size, m)), none, none, none, x), whole)
+    rows = jax.tree.map(lambda leaf: repeat(leaf, memory // size), row)
+    return Branches(x, jnp.full(size, steps, jnp.int32), rows, jnp.zeros((), jnp.int32))
+
+
+def _kept(batch: Batch, whole: bool) -> Batch:
+    """What the ring keeps of transitions."""
+    nothing: dict[str, Any] = dict.fromkeys(("action", "terminated", "truncated", "next_obs"))
+    return batch if whole else batch._replace(**nothing)
 
 
 def extended(
@@ -82,16 +90,19 @@ def extended(
     for_policy = jax.random.normal(acting, (len(x), m))
     for_model = jax.random.normal(moving, x.shape)
     made = step(x, for_policy, for_model, choosing)
-    flags = jnp.stack([made.reward, made.terminated], -1)
-    rows = jnp.concatenate([made.obs, made.action, flags, made.next_obs], -1)
-    slot = branches.count % len(branches.rows)
+    slot = branches.count % len(branches.rows.obs)
+    rows = jax.tree.map(
+        lambda ring, new: jax.lax.dynamic_update_index_in_dim(ring, new, slot, 0),
+        branches.rows,
+        _kept(made, branches.rows.action is not None),
+    )
     ended = made.terminated > 0.5
     if margin is not None:
         ended |= _far(made.next_obs, start, margin)
     return Branches(
         made.next_obs,
         jnp.where(ended, steps, age + 1),
-        jax.lax.dynamic_update_index_in_dim(branches.rows, rows, slot, 0),
+        rows,
         branches.count + 1,
     )
 
@@ -108,13 +119,12 @@ def _far(x: Array, real: Array, margin: float) -> Array:
     return (outside & varies).any(-1)
 
 
-def sample_kept(branches: Branches, m: int, key: Array) -> Batch:
+def sample_kept(branches: Branches, key: Array) -> Batch:
     """B transitions, uniform over those that are kept. The key is consumed."""
-    length, size, width = branches.rows.shape
-    known, n = jnp.minimum(branches.count, length) * size, branches.x.shape[1]
-    rows = branches.rows.reshape(-1, width)[jax.random.randint(key, (size,), 0, known)]
-    x, u, flags, after = jnp.split(rows, (n, n + m, n + m + 2), axis=1)
-    return Batch(x, u, flags[:, 0], flags[:, 1], jnp.zeros(size), after)
+    length, size = branches.rows.reward.shape
+    known = jnp.minimum(branches.count, length) * size
+    index = jax.random.randint(key, (size,), 0, known)
+    return jax.tree.map(lambda ring: ring.reshape(-1, *ring.shape[2:])[index], branches.rows)
 
 
 def sample_fresh(step: Transitions, start: Array, m: int, steps: int, key: Array) -> Batch:

@@ -1,10 +1,9 @@
-"""Adam: with decay of the weights of layers, and one step of it."""
+"""Adam with decay of the weights of layers."""
 
 from typing import Any
 
 import jax
 import optax
-from jax import Array
 
 
 def adamw(learning_rate: Any, weight_decay: float) -> optax.GradientTransformation:
@@ -15,12 +14,6 @@ def adamw(learning_rate: Any, weight_decay: float) -> optax.GradientTransformati
     if not weight_decay:
         return optax.adam(learning_rate)
     return optax.adamw(learning_rate, weight_decay=weight_decay, mask=_matrices)
-
-
-def adam_step(learning_rate: Array | float, grads: Any, state: Any, params: Any) -> tuple[Any, Any]:
-    """The parameters and the state of Adam after a step down `grads`."""
-    change, state = optax.adam(learning_rate).update(grads, state, params)
-    return optax.apply_updates(params, change), state
 
 
 def _matrices(params: Any) -> Any:

@@ -13,16 +13,19 @@ has no control cost lambda a' Sigma^-1 e.
 """
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jax import Array
 
-from hybrid_rl.core import returns
-from hybrid_rl.core.adjoint import scan_unroll
-from hybrid_rl.core.batching import prepend, repeat
-from hybrid_rl.types import Path, Reward, Step
+from hybrid_rl.core import returns, rollout
+from hybrid_rl.core.batching import repeat
+from hybrid_rl.core.lifting import policy_input
+from hybrid_rl.protocols import Proposal
+from hybrid_rl.types import Params, Path, Reward, Spec, Step
 
 
 class Samples(NamedTuple):
@@ -30,6 +33,20 @@ class Samples(NamedTuple):
 
     path: Path  # x [K, T+1, n]; u [K, T, m]
     log_prob: Array  # [K, T] of u under the proposal
+
+
+class Kept(NamedTuple):
+    """The state of a planner between two decisions."""
+
+    plan: Array  # [T, m] from the next decision on
+    u: Array  # [m] the previous action
+    memory: Any  # of the objective
+    more: Any = None  # a planner's own
+
+    def later(self, plan: Array, u: Array, memory: Any, rest: float = 0.0) -> "Kept":
+        """The state after `plan` [T, m], of which u [m] acts: shifted, where the two are finite."""
+        after = shift(sound(plan, rest), rest)
+        return self._replace(plan=after, u=sound(u, rest), memory=memory)
 
 
 def imagine(
@@ -40,31 +57,71 @@ def imagine(
     plan: Array,
     noise: Any,
 ) -> Samples:
-    """K paths of the model `step` from x [n], with candidates around plan [T, m].
+    """K paths of the model `step` from x [K, n], with candidates around plan [T, m].
 
-    `propose(carry, x, a_t, noise) -> (v, log_prob, carry)` makes the candidates from the
-    noise [K, T, m] ~ N(0, I), or what the proposal has made of it; `carries` [K, ...] start the
-    paths. x may be any tree of arrays.
+    `propose(carries, x [K, n], a_t [m], noise [K, ...]) -> (v [K, m], log_prob [K], carries)` makes
+    the candidates of a decision from the noise [K, T, ...] ~ N(0, I), or what a proposal has made
+    of it; `carries` start the paths. x may be any tree of arrays.
     """
-    count = len(jax.tree.leaves(noise)[0])
-    start = repeat(x, count)
-    propose_all = jax.vmap(propose, in_axes=(0, 0, None, 0))
 
-    def forward(state: tuple[Any, Any], inputs: tuple[Array, Any]) -> tuple:
-        x, carry = state
-        a, noise = inputs
-        v, log_prob, carry = propose_all(carry, x, a, noise)
-        x = jax.vmap(step)(x, v)
-        return (x, carry), (x, v, log_prob)
+    def act(carries: Any, x: Any, at: tuple[Array, Any]) -> tuple[Array, Any, Array]:
+        v, log_prob, carries = propose(carries, x, *at)
+        return v, carries, log_prob
 
-    _, (xs, vs, log_probs) = jax.lax.scan(
-        forward,
-        (start, carries),
-        (plan, jax.tree.map(lambda leaf: leaf.swapaxes(0, 1), noise)),
-        unroll=scan_unroll(len(plan), x),
-    )
-    xs = jax.tree.map(lambda leaf: leaf.swapaxes(0, 1), prepend(start, xs))
-    return Samples(Path(xs, vs.swapaxes(0, 1)), log_probs.T)
+    def move(x: Any, v: Array) -> tuple[Any, None]:
+        return jax.vmap(step)(x, v), None
+
+    path, _, log_prob = rollout.roll(move, act, x, (plan, _swapped(noise)), carries)
+    return Samples(_swapped(path), log_prob.T)
+
+
+def _swapped(tree: Any) -> Any:
+    """A tree [K, T, ...] as [T, K, ...], or the reverse."""
+    return jax.tree.map(lambda leaf: leaf.swapaxes(0, 1), tree)
+
+
+class Candidates:
+    """`count` candidates of a proposal; those of a mixture's parts follow each other.
+
+    Each part is evaluated for its own candidates alone.
+    """
+
+    def __init__(self, proposal: Proposal, count: int) -> None:
+        quantiles = np.arange(count, dtype=np.float32) / np.float32(count)
+        self.parts, self.count = parts_of(proposal, quantiles), count
+        self.ends = np.cumsum([len(quantiles) for _, quantiles in self.parts])[:-1]
+
+    def begin(self, spec: Spec) -> Any:
+        """The carries before the first decision, of each part."""
+        return [jax.vmap(partial(part.init, spec))(jnp.asarray(q)) for part, q in self.parts]
+
+    def imagine(
+        self, params: Params, step: Step, carries: Any, x: Any, plan: Array, key: Array
+    ) -> Samples:
+        """Their paths in the model `step` from x [n], around plan [T, m]. The key is consumed."""
+        noise = jnp.split(jax.random.normal(key, (self.count, *plan.shape)), self.ends)
+        shaped = [jax.vmap(part.shaped)(e) for (part, _), e in zip(self.parts, noise, strict=True)]
+
+        def propose(carries: Any, x: Any, a: Array, noise: Any) -> tuple[Array, Array, Any]:
+            each = zip(carries, jnp.split(policy_input(x), self.ends), noise, strict=True)
+            drawn = [
+                jax.vmap(part, (None, 0, 0, None, 0))(params, carry, x, a, e)
+                for (part, _), (carry, x, e) in zip(self.parts, each, strict=True)
+            ]
+            v, log_prob, carries = zip(*drawn, strict=True)
+            return jnp.concatenate(v), jnp.concatenate(log_prob), list(carries)
+
+        return imagine(step, propose, carries, repeat(x, self.count), plan, shaped)
+
+
+def parts_of(proposal: Proposal, quantiles: np.ndarray) -> list[tuple[Proposal, np.ndarray]]:
+    """The parts of a mixture, nested or not, with the quantiles of their candidates."""
+    if not len(quantiles):
+        return []
+    split: Any = getattr(proposal, "split", None)
+    if split is None:
+        return [(proposal, quantiles)]
+    return [each for part, own in split(quantiles) for each in parts_of(part, own)]
 
 
 def weights(
@@ -140,14 +197,14 @@ def plan(
     """
     returns.check_start(step, x, before)
 
-    def propose(carry: Array, x: Array, a: Array, noise: Array) -> tuple[Array, Array, Array]:
-        return jnp.clip(a + std * noise, -1, 1), jnp.zeros(()), carry
+    def propose(carry: None, x: Array, a: Array, noise: Array) -> tuple[Array, Array, None]:
+        return jnp.clip(a[None] + std * noise, -1, 1), jnp.zeros(samples), carry
 
     def to_go(path: Path) -> Array:
         rewards = returns.rewards(reward, path)
         return returns.to_go(rewards, jnp.ones_like(rewards), jnp.zeros_like(rewards[0]))
 
     noise = jax.random.normal(key, (samples, *before.shape))
-    path = imagine(step, propose, jnp.zeros(samples), x, before, noise).path
+    path = imagine(step, propose, None, repeat(x, samples), before, noise).path
     S = jax.vmap(to_go)(path)[:, :-1]
     return jnp.einsum("kt,ktm->tm", weights(S, temperature, normalise=True), path.u)

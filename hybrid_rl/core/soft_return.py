@@ -15,8 +15,8 @@ from jax import Array
 from hybrid_rl.types import Imagined
 
 
-def returns(paths: Imagined, alpha: Array, discount: float, last: Array) -> Array:
-    """y [H, B] along paths whose last decisions have action values `last` [B]."""
+def returns(paths: Imagined, alpha: Array, discount: float, last: Array) -> tuple[Array, Array]:
+    """V_0 [B] and y [H, B] along paths whose last decisions have action values `last` [B]."""
 
     def back(value: Array, at: tuple[Array, Array, Array]) -> tuple[Array, Array]:
         r, continues, log_prob = at
@@ -25,7 +25,7 @@ def returns(paths: Imagined, alpha: Array, discount: float, last: Array) -> Arra
 
     along = paths.reward, paths.continues, paths.log_prob[:-1]
     value = last - alpha * paths.log_prob[-1]
-    return jax.lax.scan(back, value, along, reverse=True, unroll=True)[1]
+    return jax.lax.scan(back, value, along, reverse=True, unroll=True)
 
 
 def reached(paths: Imagined) -> Array:

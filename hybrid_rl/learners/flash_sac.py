@@ -14,6 +14,7 @@ learning rate falls by half over 1,000,000 decisions, here it is constant.
 """
 
 import math
+from dataclasses import KW_ONLY
 from typing import Any, ClassVar, Protocol
 
 import jax
@@ -21,11 +22,9 @@ import jax.numpy as jnp
 import optax
 from jax import Array
 
-from hybrid_rl.core import decay
-from hybrid_rl.core.optimisers import adam_step
-from hybrid_rl.core.soft_actor_critic import SACState
-from hybrid_rl.fields import Count, Discount, Positive, Share, part
-from hybrid_rl.protocols import Critic, LearnedPolicy, Schedule
+from hybrid_rl.core.actor_critic import ActorCritic, ActorCriticState, adam_step
+from hybrid_rl.fields import Count, Positive, Share, part
+from hybrid_rl.protocols import Critic, LearnedPolicy
 from hybrid_rl.types import Batch, Params, PyTree, Spec
 
 
@@ -62,7 +61,7 @@ class BatchPolicy(LearnedPolicy, Protocol):
 
 
 @part
-class FlashSAC:
+class FlashSAC(ActorCritic):
     """Soft actor-critic on a batch normalised policy and a categorical critic.
 
     Its rewards are divided by `params.scale`, the scale of returns.
@@ -70,45 +69,27 @@ class FlashSAC:
 
     policy: BatchPolicy
     critic: CategoricalCritic
+    _: KW_ONLY
     learning_rate: Positive = 3e-4
     alpha: Positive = 0.01  # initial temperature, for scaled rewards
     target_sigma: Positive = 0.15  # of the normal distribution with the entropy that is aimed at
-    discount: Discount = 0.99
     tau: Share = 0.01
     batch_size: Count = 512
     batches: Count = 2  # steps of the critic for each step of the policy
     updates: float = 0.5  # steps of the policy per decision
-    schedule: Schedule | None = None  # of the learning rate
 
-    data: ClassVar[str] = "uniform"
-    owns: ClassVar[tuple[str, ...]] = ("policy", "critic")
     during_random: ClassVar[bool] = False  # starts after the random decisions
 
-    def init(self, key: Array, spec: Spec) -> SACState:
+    def init(self, key: Array, spec: Spec) -> ActorCriticState:
         """Initial parameters, optimisers of their "weights", and target. The key is consumed."""
-        for_policy, for_critic = jax.random.split(key)
-        policy, critic = self.policy.init(for_policy, spec), self.critic.init(for_critic, spec)
-        log_alpha, rule = jnp.log(jnp.float32(self.alpha)), optax.adam(self.learning_rate)
-        return SACState(
-            policy,
-            critic,
-            jax.tree.map(jnp.copy, critic),
-            log_alpha,
-            rule.init(policy["weights"]),
-            rule.init(critic["weights"]),
-            rule.init(log_alpha),
-        )
-
-    def params(self, state: SACState) -> dict[str, Any]:
-        """The policy and the critic."""
-        return {"policy": state.policy, "critic": state.critic}
+        return self.begun(key, spec, self.alpha, lambda params: params["weights"])
 
     def update(
-        self, state: SACState, params: Params, batch: Batch, key: Array
-    ) -> tuple[SACState, dict[str, Array]]:
+        self, state: ActorCriticState, params: Params, batch: Batch, key: Array
+    ) -> tuple[ActorCriticState, dict[str, Array]]:
         """A step of policy and temperature, then `batches` of the critic. The key is consumed."""
         acting, *following = jax.random.split(key, 1 + self.batches)
-        rate = self.learning_rate * decay.of_rates(self.schedule, params.decisions)
+        rate = self.learning_rate * self.factor(params)
         batch = batch._replace(reward=batch.reward / params.scale, next_action=None)
         size = len(batch.reward) // self.batches
         stacked = jax.tree.map(lambda v: v.reshape(self.batches, size, *v.shape[1:]), batch)
@@ -120,8 +101,8 @@ class FlashSAC:
         return state, metrics
 
     def _improved(
-        self, state: SACState, batch: Batch, key: Array, rate: Array | float
-    ) -> tuple[SACState, dict[str, Array]]:
+        self, state: ActorCriticState, batch: Batch, key: Array, rate: Array | float
+    ) -> tuple[ActorCriticState, dict[str, Array]]:
         """One step of policy and temperature. The key is consumed."""
         both, b = jnp.concatenate([batch.obs, batch.next_obs]), len(batch.obs)
         noise = jax.random.normal(key, (2 * b, batch.action.shape[-1]))
@@ -151,8 +132,8 @@ class FlashSAC:
         ), metrics
 
     def _evaluated(
-        self, state: SACState, batch: Batch, key: Array, rate: Array | float
-    ) -> tuple[SACState, dict[str, Array]]:
+        self, state: ActorCriticState, batch: Batch, key: Array, rate: Array | float
+    ) -> tuple[ActorCriticState, dict[str, Array]]:
         """One step of the critic and its target. The key is consumed."""
         b, noise = len(batch.obs), jax.random.normal(key, batch.action.shape)
         after, log_prob = self.policy.sample(state.policy, batch.next_obs, noise)

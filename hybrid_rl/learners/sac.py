@@ -8,79 +8,40 @@
 A time limit does not terminate the task: `truncated` is not used.
 """
 
-from typing import Any, ClassVar
+from typing import Any
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import decay
-from hybrid_rl.core import soft_actor_critic as steps
-from hybrid_rl.core.soft_actor_critic import SACState
-from hybrid_rl.fields import Count, Discount, NotNegative, Positive, Share, part
-from hybrid_rl.protocols import Critic, LearnedPolicy, Schedule
-from hybrid_rl.types import Batch, Params, Spec
+from hybrid_rl.core.actor_critic import ActorCriticState, SoftActorCritic
+from hybrid_rl.fields import part
+from hybrid_rl.types import Batch, Imagined, Params, Spec
 
 
 @part
-class SAC:
+class SAC(SoftActorCritic):
     """Soft actor-critic on a policy and a critic."""
 
-    policy: LearnedPolicy
-    critic: Critic
-    policy_learning_rate: Positive = 3e-4
-    critic_learning_rate: Positive = 3e-4
-    alpha_learning_rate: NotNegative = 3e-4  # 0: alpha stays
-    alpha: Positive = 1.0  # initial temperature
-    target_entropy: float | None = None  # [nat]; None: -m
-    discount: Discount = 0.99
-    tau: Share = 0.005
-    batch_size: Count = 256
-    updates: float = 1  # per decision
-    during_random: bool = False  # whether it also learns while decisions are random
-    max_grad_norm: Positive | None = None  # of the policy's gradient; None: no limit
-    schedule: Schedule | None = None  # of the learning rates
-
-    data: ClassVar[str] = "uniform"
-    owns: ClassVar[tuple[str, ...]] = ("policy", "critic")
-    batches: ClassVar[int] = 1
-
-    def init(self, key: Array, spec: Spec) -> SACState:
+    def init(self, key: Array, spec: Spec) -> ActorCriticState:
         """Initial parameters, optimisers and target. The key is consumed."""
-        return steps.init(self, key, spec)
-
-    def params(self, state: SACState) -> dict[str, Any]:
-        """The policy and the critic."""
-        return {"policy": state.policy, "critic": state.critic}
+        return self.begun(key, spec, self.alpha)
 
     def update(
-        self, state: SACState, params: Params, batch: Batch, key: Array
-    ) -> tuple[SACState, dict[str, Array]]:
+        self, state: ActorCriticState, params: Params, batch: Batch, key: Array
+    ) -> tuple[ActorCriticState, dict[str, Array]]:
         """One step of critic, policy, temperature and target. The key is consumed."""
-        alpha, factor = jnp.exp(state.log_alpha), decay.of_rates(self.schedule, params.decisions)
-        state = steps.observed(self, state, batch)
+        state = self.observed(state, batch)
         noise = jax.random.normal(jax.random.split(key)[0], (2, *batch.action.shape))
-        y = steps.target(self, state, alpha, batch, noise[0])
-        state, (critic_loss, q) = steps.critic_step(
-            self, state, batch.obs, batch.action, y, factor=factor
-        )
+        recorded = self.recorded(state, batch, noise[0])
+        state, of_critic = self.evaluated(state, recorded, 1, params)
 
-        def loss(policy: Any) -> tuple[Array, Array]:
-            v, log_prob = self.policy.sample(policy, batch.obs, noise[1])
-            value = self.critic.value(state.critic, batch.obs, v) - alpha * log_prob
-            return -value.mean(), log_prob
+        def now(policy: Any) -> Imagined:
+            """No decision more than the first of the policy."""
+            u, log_prob = self.policy.sample(policy, batch.obs, noise[1])
+            none = jnp.zeros((0, len(u)))
+            return Imagined(batch.obs[None], u[None], log_prob[None], none, none)
 
-        state, (policy_loss, log_prob, norm) = steps.policy_step(
-            self, state, loss, self.max_grad_norm, factor
-        )
-        entropy = -log_prob.mean()
-        actions = batch.action.shape[-1]
-        state = steps.temperature_and_target(self, state, entropy, actions, factor)
-        return state, {
-            "sac/critic_loss": critic_loss,
-            "sac/q": q,
-            "sac/policy_loss": policy_loss,
-            "sac/entropy": entropy,
-            "sac/gradient_norm": norm,
-            "sac/alpha": alpha,
-        }
+        state, along = self.improved(state, now, params)
+        state, metrics = self.settled(state, along, params)
+        return state, of_critic | metrics

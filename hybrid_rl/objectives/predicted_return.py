@@ -6,8 +6,6 @@ c_t is the discount so far, times the probability that the episode continues if 
 it: without it a planner expects rewards after a robot has fallen.
 """
 
-from typing import Any
-
 import jax
 import jax.numpy as jnp
 from jax import Array
@@ -42,20 +40,12 @@ class PredictedReturn:
         """J of a path; the key is not used."""
         return lambda path: self.reward_to_go(params, path)[0], memory
 
-    def rewards(self, params: Params, path: Path) -> Array:
-        """r [T] along path, x [T+1, n] and u [T, m]."""
-        return self._outcomes(params, path)[0]
-
-    def _outcomes(self, params: Params, path: Path) -> Any:
-        """Rewards [T], and logits [T] of the episode ending."""
-        each = jax.vmap(self.reward.outcome, (None, 0, 0, 0))
-        before = jax.tree.map(lambda leaf: leaf[:-1], path.x)
-        after = jax.tree.map(lambda leaf: leaf[1:], path.x)
-        return each(params, before, path.u, after)
-
     def reward_to_go(self, params: Params, path: Path) -> Array:
         """S [T+1] along path, x [T+1, n] and u [T, m]; S[T] is the value of the last state."""
-        rewards, ends = self._outcomes(params, path)
+        before = jax.tree.map(lambda leaf: leaf[:-1], path.x)
+        after = jax.tree.map(lambda leaf: leaf[1:], path.x)
+        each = jax.vmap(self.reward.outcome, (None, 0, 0, 0))
+        rewards, ends = each(params, before, path.u, after)  # [T] each
         last = jnp.zeros(())
         if self.critic is not None and self.policy is not None:
             x = policy_input(jax.tree.map(lambda leaf: leaf[-1], path.x))

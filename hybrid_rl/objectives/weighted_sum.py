@@ -66,18 +66,10 @@ class WeightedSum:
 
         return value, SumState(terms, memory.count + 1)
 
-    def rewards(self, params: Params, path: Path) -> Array:
-        """r [T] along path, x [T+1, n] and u [T, m]."""
-        return self._weighted("rewards", params, path)
-
     def reward_to_go(self, params: Params, path: Path) -> Array:
         """S [T+1] along path, x [T+1, n] and u [T, m]."""
-        return self._weighted("reward_to_go", params, path)
-
-    def _weighted(self, name: str, params: Params, path: Path) -> Array:
-        """The weighted sum of the method `name` of all terms."""
         if any(decay != 1 for decay in self.decays.values()):
             raise ValueError("objective.decays: a planner that samples needs constant weights")
         terms: Mapping[str, Any] = self.terms
-        each = [self.weights[t] * getattr(term, name)(params, path) for t, term in terms.items()]
+        each = [self.weights[t] * term.reward_to_go(params, path) for t, term in terms.items()]
         return sum(each[1:], each[0])

@@ -13,6 +13,7 @@ densities of different distributions.
 from typing import Any, ClassVar
 
 import jax.numpy as jnp
+import numpy as np
 from jax import Array
 
 from hybrid_rl.fields import Fraction, part
@@ -28,6 +29,11 @@ class MixtureProposal:
     second: Proposal
     share: Fraction = 0.5
     density: ClassVar[bool] = False  # densities of two distributions cannot be compared
+
+    def split(self, quantiles: np.ndarray) -> list[tuple[Proposal, np.ndarray]]:
+        """The two proposals, with the quantiles [K] of their candidates."""
+        is_first = quantiles < np.float32(self.share)
+        return [(self.first, quantiles[is_first]), (self.second, quantiles[~is_first])]
 
     def init(self, spec: Spec, quantile: Array) -> tuple[Array, Any, Any]:
         """Whether `first` draws this path, and the carries of both."""

@@ -10,11 +10,10 @@ from hybrid_rl.types import Params, PyTree, Return, Spec
 class Objective(Protocol):
     """J(path): the return that a planner maximises; any function of the path and of the past.
 
-    One that is a sum over time may have two methods of `params` and `path`, which a planner that
-    samples calls instead: `rewards`, r [T] of each decision, and `reward_to_go`, S [T+1] from each
-    time on, with J = S[0] and the value of the last state in S[T]. One with a memory may have
-    `covered(params, memory, x, key)`: metrics of the episode up to x [n], which gradient planners
-    log; its key is that of `prepare`.
+    One that is a sum over time may have `reward_to_go(params, path)`, which a planner that samples
+    calls instead: S [T+1] from each time on, with J = S[0] and the value of the last state in S[T].
+    One with a memory may have `covered(params, memory, x, key)`: metrics of the episode up to x,
+    which gradient planners log; its key is that of `prepare`.
     """
 
     def init(self, spec: Spec) -> PyTree:

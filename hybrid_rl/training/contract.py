@@ -208,7 +208,7 @@ def _check_acting(
 def _check_objectives(owner: Any, agent: Any, params: Params, env: EnvState) -> None:
     """Raise PartError unless the user's objectives in a controller or a learner give numbers.
 
-    J [], and with `reward_to_go` S [T+1], with `rewards` r [T], of T decisions without motion.
+    J [], and with `reward_to_go` S [T+1], of T decisions without motion.
     """
     key, every = jax.eval_shape(lambda: jax.random.key(0)), [*parts(owner)]
     model = next((each for each in every if all(hasattr(each, name) for name in MODEL)), None)
@@ -223,7 +223,7 @@ def _check_objectives(owner: Any, agent: Any, params: Params, env: EnvState) -> 
                 return getattr(of, name)(params, path)
             return of.prepare(params, of.init(agent.spec), x, u[0], key)[0](path)
 
-        for name, size in (("prepare", ()), ("reward_to_go", (T + 1,)), ("rewards", (T,))):
+        for name, size in (("prepare", ()), ("reward_to_go", (T + 1,))):
             if not hasattr(part, name):
                 continue
             got = shapes(part, name, partial(judged, name=name), params, env, key)

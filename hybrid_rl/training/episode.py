@@ -18,35 +18,31 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.core.batching import when_any, where
-from hybrid_rl.envs import sensor_noise
 from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.envs.mujoco.randomised import Ranges
 from hybrid_rl.errors import UsageError
 from hybrid_rl.fields import Count, FieldError, Natural, NotNegative, check
 from hybrid_rl.protocols import Constraint, Env, Goal
 from hybrid_rl.training import user_functions
+from hybrid_rl.training.wrappers import put_around
 from hybrid_rl.types import EnvState, Spec
 
 # Environments always compute in full precision, networks perhaps with less on an accelerator.
 EXACT = partial(jax.default_matmul_precision, "highest")
-SENSED = "episode_noise"  # in `info`: the key of the next noise
-TRUE = "true_obs"  # in `info`: the observation before it
-DISTURBED = "action_noise"  # in `info`: the key of the next disturbance
 OWN = {"steps": Count, "action_repeat": Count, "delay": Natural, "action_noise": NotNegative}
-VIOLATED = "violation"  # in `metrics`: 1 where the decision violates the constraint, else 0
 
 
 @dataclass(frozen=True)
 class Episode:
     """An environment with a time limit.
 
-    `info["decision"]` and `info["return"]` count from the last reset. An action is repeated for
-    `action_repeat` steps of the environment, whose rewards are added until it terminates. With a
-    delay the first actions are 0.
+    The state's `clock` counts decisions and the return from the last reset. An action is repeated
+    for `action_repeat` steps of the environment, whose rewards are added until it terminates. With
+    a delay the first actions are 0.
 
     A decision violates the constraint by the environment's next observation, before noise. Then
-    `metrics["violation"]` is 1, else 0, `info["violations"]` counts it, and the reward is reduced
-    by the constraint's price; the return is not.
+    `metrics["violation"]` is 1, else 0, the clock counts it, and the reward is reduced by the
+    constraint's price; the return is not.
 
     Raises:
         ValueError: for counts that are no whole numbers or too small, noise of another size, or
@@ -73,11 +69,11 @@ class Episode:
             user_functions.check(name, getattr(self, name), self.env.spec)
         object.__setattr__(self, "randomise", self._ranges(self.randomise))
         if isinstance(self.sensor_noise, list):  # so that episodes can be hashed
-            object.__setattr__(self, "sensor_noise", self._std)
+            object.__setattr__(self, "sensor_noise", self.std)
         sizes = (1, self.env.spec.obs)
-        numbers = all(isinstance(x, Real) and not isinstance(x, bool) for x in self._std)
-        right = numbers and min(self._std, default=0) >= 0
-        if len(self._std) not in sizes or not right:
+        numbers = all(isinstance(x, Real) and not isinstance(x, bool) for x in self.std)
+        right = numbers and min(self.std, default=0) >= 0
+        if len(self.std) not in sizes or not right:
             line = f"must be 1 or {sizes[1]} numbers, each 0 or more"
             raise FieldError(self, "sensor_noise", line).at("episode")
 
@@ -101,100 +97,32 @@ class Episode:
             raise error.at("episode.randomise") from error
 
     @property
-    def _std(self) -> tuple[float, ...]:
+    def std(self) -> tuple[float, ...]:
+        """Of the noise of all entries of the observation, or of each."""
         return tuple(np.atleast_1d(self.sensor_noise).tolist())
+
+    @property
+    def world(self) -> Env:
+        """The environment with everything that is around it."""
+        return put_around(self.env, self)
 
     @property
     def spec(self) -> Spec:
         """Sizes of the environment, and the time between decisions."""
-        return self.env.spec._replace(dt=self.env.spec.dt * self.action_repeat)
+        return self.world.spec
 
     def reset(self, key: Array) -> EnvState:
         """The first state of an episode. The key is consumed."""
         with EXACT():
-            state = jax.tree.map(jnp.asarray, self.env.reset(key))  # of Python's numbers, too
-        if self.randomise is not None:
-            own = self.randomise.draw(state.data, self.spec.act, jax.random.fold_in(key, 7))
-            state = state.replace(data=own)
-        clock = {"decision": jnp.zeros((), jnp.int32), "return": jnp.zeros(())}
-        if self.delay:
-            clock["late"] = jnp.zeros((self.delay, self.spec.act))
-        if any(self._std):
-            clock[TRUE] = state.obs
-        if self.action_noise:
-            clock[DISTURBED] = jax.random.key_data(jax.random.fold_in(key, 6))
-        if self.constraint is not None:
-            clock["violations"] = jnp.zeros(())
-            state = state.replace(metrics={**state.metrics, VIOLATED: jnp.zeros(())})
-        state = state.replace(info={**state.info, **clock})
-        return sensor_noise.begin(state, self._std, jax.random.fold_in(key, 5), SENSED)
+            return self.world.reset(key)
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """One decision with action [m]; UsageError for another shape."""
         if jnp.shape(action) != (self.spec.act,):
             shape, right = list(jnp.shape(action)), [self.spec.act]
             raise UsageError(f"the action is {shape}; it must be {right}; vmap steps many")
-        if any(self._std):
-            state = state.replace(obs=state.info[TRUE])
-        if self.delay:
-            late = jnp.concatenate((state.info["late"], action[None]))
-            action, state = late[0], state.replace(info={**state.info, "late": late[1:]})
-        if self.action_noise:
-            action, state = self._disturbed(state, action)
-        now = self._decide(state, action)
-        if any(self._std):
-            now = now.replace(info={**now.info, TRUE: now.obs})
-        return sensor_noise.resume(now, self._std, state, SENSED)
-
-    def _disturbed(self, state: EnvState, action: Array) -> tuple[Array, EnvState]:
-        """The action [m] with noise, and the state with the key of the next noise."""
-        now, later = jax.random.split(jax.random.wrap_key_data(state.info[DISTURBED]))
-        noise = self.action_noise * jax.random.normal(now, action.shape, action.dtype)
-        info = {**state.info, DISTURBED: jax.random.key_data(later)}
-        return jnp.clip(action + noise, -1.0, 1.0), state.replace(info=info)
-
-    def _decide(self, state: EnvState, action: Array) -> EnvState:
-        now = self._substep(state, action)
-
-        def repeat(_: int, now: EnvState) -> EnvState:
-            after = self._substep(now, action)
-            after = after.replace(reward=now.reward + after.reward)
-            return where(now.terminated, now, after)
-
-        if self.action_repeat > 1:
-            now = jax.lax.fori_loop(1, self.action_repeat, repeat, now)
-        decision = state.info["decision"] + 1
-        now = now.replace(
-            truncated=(decision >= self.steps) & ~now.terminated,
-            info={
-                **state.info,  # also what is not of this environment
-                **now.info,
-                "decision": decision,
-                "return": state.info["return"] + now.reward,
-            },
-        )
-        return now if self.constraint is None else self._judged(self.constraint, state, action, now)
-
-    def _judged(
-        self, constraint: Constraint, state: EnvState, action: Array, now: EnvState
-    ) -> EnvState:
-        """`now`, the state after action [m] at `state`, with its violation counted and priced."""
         with EXACT():
-            beyond = constraint.excess(state.obs, jnp.clip(action, -1.0, 1.0), now.obs)
-        violated = (beyond > 0).astype(now.reward.dtype)
-        return now.replace(
-            reward=now.reward - constraint.price * violated,
-            metrics={**now.metrics, VIOLATED: violated},
-            info={**now.info, "violations": state.info["violations"] + violated},
-        )
-
-    def _substep(self, state: EnvState, action: Array) -> EnvState:
-        with EXACT():
-            now = jax.tree.map(jnp.asarray, self.env.step(state, action))
-            if self.reward is None:
-                return now
-            u = jnp.clip(action, -1.0, 1.0)
-            return now.replace(reward=self.reward.reward_of(state.obs, u, now.obs))
+            return self.world.step(state, action)
 
     @property
     def relabels(self) -> bool:

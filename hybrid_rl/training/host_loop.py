@@ -35,7 +35,7 @@ from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Loop, put
 from hybrid_rl.training.metrics import outcome
 from hybrid_rl.training.rollout import act
 from hybrid_rl.training.sending import mailbox, send
-from hybrid_rl.types import EnvState, Params
+from hybrid_rl.types import Clock, EnvState, Params
 
 NONE: Mapping[str, Array] = MappingProxyType({})
 RESUMED = "the environment begins a new episode, as its own state is in no checkpoint: the "
@@ -263,13 +263,12 @@ def seed_of(*numbers: int) -> int:
 
 def states(env: EnvState, got: Outcome) -> tuple[EnvState, EnvState]:
     """The states [E] after a decision at `env` [E]: the outcome, and what the next one sees."""
-    clock = {"decision": env.info["decision"] + 1, "return": env.info["return"] + got.reward}
     now = env.replace(
         obs=got.obs,
         reward=got.reward,
         terminated=got.terminated,
         truncated=got.truncated,
-        info={**env.info, **clock},
+        clock=Clock(env.clock.decision + 1, env.clock.total + got.reward),
     )
     first = jax.tree.map(jnp.zeros_like, now)
     return now, where(now.done, first, now).replace(obs=got.following)

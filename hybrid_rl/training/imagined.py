@@ -9,7 +9,7 @@ from jax import Array
 from hybrid_rl.core.batching import where
 from hybrid_rl.core.branches import Branches
 from hybrid_rl.core.lifting import lifted_spec
-from hybrid_rl.core.members import predict_members
+from hybrid_rl.core.rollout import predict_members
 from hybrid_rl.fields import Count, Natural, NotNegative, Strengths, part
 from hybrid_rl.protocols import LearnedPolicy, Reward, Trainable, UniformLearner
 from hybrid_rl.training.episode import Episode

@@ -12,8 +12,8 @@ def outcome(action: Array, now: EnvState) -> dict[str, Array]:
     return {
         **masked_mean({f"world/{name}": value for name, value in world.items()}, True),
         "episode/done": now.done,
-        "episode/return": now.info["return"],
-        "episode/length": now.info["decision"],
+        "episode/return": now.clock.total,
+        "episode/length": now.clock.decision,
     }
 
 

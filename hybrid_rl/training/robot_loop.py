@@ -118,8 +118,8 @@ class RobotLoop(Loop):
 
         `got.following` is the observation before the decision.
         """
-        clock = jax.tree.map(lambda x: jnp.where(first, 0, x).astype(x.dtype), state.env.info)
-        now, after = states(state.env.replace(obs=got.following, info=clock), got)
+        clock = jax.tree.map(lambda x: jnp.where(first, 0, x).astype(x.dtype), state.env.clock)
+        now, after = states(state.env.replace(obs=got.following, clock=clock), got)
         state, metrics = self.agent.learn(state.replace(env=after), step)
         return state, {**metrics, **outcome(action, now)}
 

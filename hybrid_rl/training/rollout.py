@@ -65,8 +65,8 @@ def scores(env: EnvState) -> dict[str, Array]:
     that violated the constraint.
     """
     success = {"success": env.metrics["success"]} if "success" in env.metrics else {}
-    counted = {name: env.info[name] for name in ("return", "violations") if name in env.info}
-    return {**counted, **success}
+    found = {"return": env.clock.total, "violations": env.clock.violations, **success}
+    return {name: value for name, value in found.items() if value is not None}
 
 
 def evaluate_episodes(

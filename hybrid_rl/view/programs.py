@@ -72,7 +72,12 @@ def _bare(state: EnvState, like: EnvState) -> EnvState:
     if isinstance(data, PhysicsState):
         data = data.replace(fields={name: data.fields[name] for name in like.data.fields})
     metrics = {name: state.metrics[name] for name in like.metrics}
-    return state.replace(data=data, info=info, metrics=metrics)
+    clock = None
+    if like.clock is not None:
+        clock = type(like.clock)(
+            *(None if own is None else x for own, x in zip(like.clock, state.clock, strict=True))
+        )
+    return state.replace(data=data, info=info, metrics=metrics, clock=clock)
 
 
 def world(episode: Episode, numbers: Numbers) -> World:

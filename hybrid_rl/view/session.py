@@ -102,7 +102,7 @@ class Session:
     def _decide(self) -> None:
         """One decision, after a push; a new episode after the last one."""
         player, pull = self.player, self.wishes.pull
-        total = float(player.state.info["return"])
+        total = float(player.state.clock.total)
         if bool(player.state.done) or not np.isfinite(total):  # a body that cannot be simulated
             self.episodes += 1
             self._ended = f"; the last one: {total:,.1f}"
@@ -114,7 +114,7 @@ class Session:
         self.decisions += 1
         assert player.decided is not None
         reward, metrics = jax.device_get((player.state.reward, player.decided.metrics))
-        t = self._dt * int(player.state.info["decision"])
+        t = self._dt * int(player.state.clock.decision)
         self._history.add(t, float(reward), metrics)
 
     def _picture(self) -> None:
@@ -145,12 +145,12 @@ class Session:
         player, state = self.player, self.player.state
         choice, asked = player.cast.choice, player.wanted
         trained = "" if self._step is None else f", step {self._step:,}"
-        t = self._dt * int(state.info["decision"])
+        t = self._dt * int(state.clock.decision)
         lines = [
             f"**{self._name}**{trained}, mode {choice.mode}{', quick' if choice.quick else ''}",
             f"{t:.1f} s, {self._rate:.2f} times real time",
             f"computed in {self._took:.3f} s, a decision of {self._dt:.3g} s",
-            f"return {float(state.info['return']):,.1f}{self._ended}",
+            f"return {float(state.clock.total):,.1f}{self._ended}",
         ]
         if player.compiling:
             goal = f", reward {asked.reward}" if asked.reward else ""

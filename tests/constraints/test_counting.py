@@ -42,12 +42,12 @@ def test_violations_are_those_of_the_observations(repeat: int) -> None:
     broken = np.abs(states.obs[1:, 2]) > 2
     assert 0 < broken.sum() < 30
     np.testing.assert_array_equal(states.metrics["violation"], [0, *broken])
-    np.testing.assert_array_equal(states.info["violations"], np.cumsum([0, *broken]))
-    np.testing.assert_array_equal(states.info["return"], free.info["return"])
+    np.testing.assert_array_equal(states.clock.violations, np.cumsum([0, *broken]))
+    np.testing.assert_array_equal(states.clock.total, free.clock.total)
     np.testing.assert_allclose(states.reward[1:], free.reward[1:] - 7 * broken, rtol=1e-6)
     got = evaluate_episodes(limited, resting, Params(), key[None])
     assert {name: float(each[0]) for name, each in got.items()} == {
-        "return": pytest.approx(float(free.info["return"][-1])),
+        "return": pytest.approx(float(free.clock.total[-1])),
         "violations": broken.sum(),
     }
     assert set(evaluate_episodes(plain, resting, Params(), key[None])) == {"return"}
@@ -61,7 +61,7 @@ def test_noise_of_sensors_violates_nothing() -> None:
         lambda: rollout(noisy, ConstantController(), Params(), jax.random.key(0), 20)
     )()
     assert np.abs(states.obs[:, 2]).max() > 8.5
-    assert float(states.info["violations"][-1]) == 0
+    assert float(states.clock.violations[-1]) == 0
 
 
 def test_effort_counts_the_action_that_arrives() -> None:
@@ -70,7 +70,7 @@ def test_effort_counts_the_action_that_arrives() -> None:
     state, step, seen = late.reset(jax.random.key(0)), jax.jit(late.step), []
     for u in (5.0, 0.5, -1.0, 0.0):
         state = step(state, jnp.array([u]))
-        seen.append(float(state.info["violations"]))
+        seen.append(float(state.clock.violations))
     assert seen == [0, 1, 1, 2]
 
 
@@ -89,7 +89,7 @@ def test_learners_are_paid_less_and_the_return_stays() -> None:
     broken = np.abs(after[:, 2]) > 2
     assert broken.any()
     np.testing.assert_allclose(reward, paid - 7 * broken, rtol=1e-4)
-    np.testing.assert_allclose(state.env.info["return"][0, 0], paid.sum(), rtol=1e-4)
+    np.testing.assert_allclose(state.env.clock.total[0, 0], paid.sum(), rtol=1e-4)
     np.testing.assert_array_equal(metrics["world/violation"][:20, 0], broken)
     again = _rewritten(built.agent, state.memory, relabelled=True)  # of a run that begins with it
     np.testing.assert_allclose(again.rows[0, :20, 0, o + m], reward, rtol=1e-4)

@@ -12,8 +12,8 @@ from jax import Array
 
 from hybrid_rl.constraints.effort import Effort
 from hybrid_rl.constraints.limit import Limit
-from hybrid_rl.controllers.gradient import Candidate, GradientController, Scored
-from hybrid_rl.core.members import predict_members
+from hybrid_rl.controllers.gradient import Candidate, GradientController, Risk
+from hybrid_rl.core.rollout import Priced, predict_members
 from hybrid_rl.models.ensemble import Ensemble
 from hybrid_rl.models.exact import Exact
 from hybrid_rl.models.gaussian import Gaussian
@@ -71,15 +71,15 @@ def test_the_plan_keeps_the_limit_that_it_breaks_without() -> None:
     """By a price that is higher than the gain, and by a chance at a price that is lower."""
     free = driven(None)
     assert float(free.obs[-1, 0]) > 3.5
-    assert float(free.info["violations"][-1]) >= 14
+    assert float(free.clock.violations[-1]) >= 14
     cheap = replace(LIMIT, price=0.01)
     for kept in (LIMIT, replace(cheap, chance=0.2)):
         states = driven(kept)
-        assert float(states.info["violations"][-1]) == 0
+        assert float(states.clock.violations[-1]) == 0
         assert float(states.obs[-1, 0]) > 0.75  # near the limit
-    assert float(driven(cheap).info["violations"][-1]) >= 14  # a price that is worth paying
+    assert float(driven(cheap).clock.violations[-1]) >= 14  # a price that is worth paying
     states = driven(LIMIT, planner=replace(PLANNER, priced=True))  # by a reward that has no price
-    assert float(states.info["violations"][-1]) >= 14
+    assert float(states.clock.violations[-1]) >= 14
 
 
 def test_from_beyond_the_limit_the_plan_returns() -> None:
@@ -97,7 +97,7 @@ def test_from_beyond_the_limit_the_plan_returns() -> None:
 def test_an_effort_is_a_limit_of_the_actions() -> None:
     effort = Effort(0.5, price=100.0)
     states = driven(effort, effort)
-    assert float(states.info["violations"][-1]) == 0
+    assert float(states.clock.violations[-1]) == 0
     assert float(states.obs[-1, 0]) > 0.2 * 0.3 * 20
 
 
@@ -106,7 +106,7 @@ def test_the_order_of_candidates() -> None:
     risk = jnp.array([0.0, 0.3, 0.9, 0.05, 0.0])
     score = jnp.array([1.0, 50.0, 90.0, 2.0, -jnp.inf])
     beyond = jnp.array([0.1, 4.0, 3.0, 9.0, jnp.inf])
-    found = Scored(score, score, 0 * score, risk, beyond, score[:, None])
+    found = Priced(score, score, 0 * score, score[:, None], Risk(risk, beyond))
     by_chance = replace(PLANNER, constraint=replace(LIMIT, chance=0.1))
     assert np.argsort(by_chance._rank(found)).tolist() == [4, 1, 2, 0, 3]
     for none in (PLANNER, replace(PLANNER, constraint=LIMIT)):
@@ -129,7 +129,7 @@ def test_violations_in_the_tail_have_their_price_and_no_chance() -> None:
     found = planner._scored(Params(), value, x, Candidate(jnp.ones(()), jnp.zeros((2, 1))))
     p = 1 / (1 + np.exp(-(0.2 * np.arange(1, 11) - 0.9) / 0.02))
     assert float(found.value - found.score) == pytest.approx(100 * p.sum(), rel=1e-4)
-    assert max(float(found.risk), float(found.beyond)) < 1e-6
+    assert max(map(float, found.notes)) < 1e-6
 
 
 def test_the_probability_is_the_mean_over_the_members() -> None:
@@ -148,7 +148,7 @@ def test_the_probability_is_the_mean_over_the_members() -> None:
     by_hand = [one({**params.model, "weights": member}, x, u) for member in members]
     assert np.std(by_hand) > 0.01
     want = np.mean([1 / (1 + np.exp(-(float(v[0]) - 1) / 0.3)) for v in by_hand])
-    assert float(planner._risk(x, u, each)[0]) == pytest.approx(want, rel=1e-4)
+    assert float(planner._risk(x, u, each)[1].risk) == pytest.approx(want, rel=1e-4)
     near = replace(planner, constraint=replace(limit, most=0.4))  # two widths below
     kept = replace(planner, margin=2.0)._risk(x, u, each)
-    np.testing.assert_allclose(kept, near._risk(x, u, each), rtol=1e-5)
+    np.testing.assert_allclose(kept[1], near._risk(x, u, each)[1], rtol=1e-5)

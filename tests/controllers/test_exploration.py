@@ -82,12 +82,12 @@ def test_the_correction_is_that_of_the_thesis() -> None:
 def test_horizon_adds_its_plan_to_the_policy_at_the_measured_state() -> None:
     """A plan is made every 8 decisions and then followed."""
     x, u, state, _ = follow(replace(KLE3, apply="horizon"), 16)
-    np.testing.assert_array_equal(state.count, np.arange(1, 17))
+    np.testing.assert_array_equal(state.more, np.arange(1, 17))
     np.testing.assert_array_equal(state.memory, np.arange(1, 17))
     for start in (0, 8):
-        plan = state.v[start]
-        held = u[start : start + 8] - own(x[start : start + 8])
-        np.testing.assert_allclose(held, plan, atol=1e-5)
+        plan = state.plan[start]
+        held = u[start + 1 : start + 8] - own(x[start + 1 : start + 8])
+        np.testing.assert_allclose(held, plan[:-1], atol=1e-5)
         assert np.abs(plan).max() > 1e-4
 
 
@@ -100,7 +100,7 @@ def test_search_keeps_the_best_window() -> None:
     }
     returns = {name: float(p[2]["planner/planned_return"]) for name, p in plans.items()}
     assert returns["search"] >= returns["horizon"]
-    searched, whole = (np.asarray(plans[name][1].v) for name in ("search", "horizon"))
+    searched, whole = (np.asarray(plans[name][1].plan) for name in ("search", "horizon"))
     on = (searched != 0).ravel()
     np.testing.assert_array_equal(searched[on], whole[on])
     assert np.sum(np.diff(on.astype(int)) == 1) <= 1  # one window
@@ -121,8 +121,8 @@ def test_search_is_never_worse_than_no_correction() -> None:
         wild = replace(
             KLE3, objective=Gentle(), policy=None, lyapunov=None, gain=gain, apply="search"
         )
-        _, state, metrics = wild.act(Params(), wild.init(WORLD.spec), START, jax.random.key(0))
-        assert np.asarray(state.v).any() == acts
+        u, state, metrics = wild.act(Params(), wild.init(WORLD.spec), START, jax.random.key(0))
+        assert np.asarray([u, *state.plan]).any() == acts
         wanted = 0 if acts else -8 * 0.1**2
         assert float(metrics["planner/planned_return"]) == pytest.approx(wanted, abs=1e-6)
 
@@ -131,7 +131,7 @@ def test_lyapunov_metrics_follow_their_definitions() -> None:
     """V, its change under the policy, and the bound, with the exact model."""
     controller = replace(KLE3, model=Exact(WORLD), horizon=3)
     begin = controller.init(WORLD.spec)
-    _, state, metrics = jax.jit(controller.act)(Params(), begin, START, jax.random.key(0))
+    first, state, metrics = jax.jit(controller.act)(Params(), begin, START, jax.random.key(0))
     flow, mean = jax.jit(WORLD.dynamics), jax.jit(lambda x: PI.mean((), x))
     P = PI.solve()[1]
 
@@ -145,7 +145,7 @@ def test_lyapunov_metrics_follow_their_definitions() -> None:
     )
     assert value(after) < value(START)
     x, apart = START, []
-    for v in state.v:
+    for v in (first - mean(START), *state.plan[:-1]):
         u = mean(x)
         apart.append(value(flow(x, u + v)) - value(flow(x, u)))
         x = flow(x, u + v)

@@ -68,7 +68,7 @@ def test_without_a_policy_it_reaches_the_best_action() -> None:
     )
     u, state, metrics = act(planner)
     np.testing.assert_allclose(u, 0.5, atol=0.03)
-    np.testing.assert_allclose(state.plan.v[:4, 0], [0.4, 0.3, 0.2, 0.1], atol=0.03)
+    np.testing.assert_allclose(state.plan[:4, 0], [0.4, 0.3, 0.2, 0.1], atol=0.03)
     assert float(metrics["planner/gain"]) > 0
 
 
@@ -102,7 +102,7 @@ def test_disagreement_costs_its_price() -> None:
         for price in (1.0, 0.0)
     )
     assert abs(float(still[0])) < 0.1 < 0.5 < float(moving[0])
-    mean = np.abs([moving, *state.plan.v[:4]]).mean()
+    mean = np.abs([moving, *state.plan[:4]]).mean()
     assert float(metrics["planner/disagreement"]) == pytest.approx(mean, rel=1e-5)
 
 
@@ -113,7 +113,7 @@ def test_strength_is_chosen_by_the_goal() -> None:
     )
     _, fast, _ = act(planner, (0.0, 1.0))
     _, slow, _ = act(planner, (0.0, 0.0))
-    assert (float(fast.plan.s), float(slow.plan.s)) == (1.0, 0.5)
+    assert (float(fast.more), float(slow.more)) == (1.0, 0.5)
 
 
 @pytest.mark.parametrize(("doubt", "pushes"), [(None, True), (0.9, True), (1.1, False)])

@@ -10,7 +10,7 @@ import pytest
 from jax import Array
 from scipy.linalg import solve_discrete_are
 
-from hybrid_rl.core import adjoint
+from hybrid_rl.core import adjoint, rollout
 from hybrid_rl.types import Path
 
 T = 6
@@ -192,4 +192,4 @@ def test_a_plan_moves_along_the_normalised_gradient_within_the_limits() -> None:
 
 def test_a_cpu_unrolls_few_steps() -> None:
     """There XLA would compute a coupled step again for every use of its result."""
-    assert [adjoint.scan_unroll(length) for length in (1, 4, 5, 32, 120)] == [1, 4, 4, 4, 4]
+    assert [rollout.scan_unroll(length) for length in (1, 4, 5, 32, 120)] == [1, 4, 4, 4, 4]

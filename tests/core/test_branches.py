@@ -27,7 +27,7 @@ def recalled(start: Array | float, steps: int, updates: int, margin: float | Non
     )
     for key in jax.random.split(jax.random.key(3), updates):
         kept = extend(kept, key)
-    return branches.sample_kept(kept, 1, jax.random.key(4))
+    return branches.sample_kept(kept, jax.random.key(4))
 
 
 def test_branches_reach_every_length() -> None:
@@ -49,14 +49,16 @@ def test_a_branch_that_ended_restarts() -> None:
 
 def test_forgotten_branches_start_again() -> None:
     """Also inside the state of a learner; no older transition is drawn. Before, all ages."""
-    old, first = branches.begin(B, 8 * B, 1, 1, 4), jnp.full((B, 1), -9.0)
+    old, first = branches.begin(B, 8 * B, 1, 1, 4, whole=False), jnp.full((B, 1), -9.0)
     for key in jax.random.split(jax.random.key(3), 10):
         old = branches.extended(old, counting, first, 1, 4, key)
     assert set(np.asarray(old.x[:, 0])) == {-8.0, -7.0, -6.0, -5.0}
     kept = forgotten({"kept": old, "other": 1})["kept"]
     kept = branches.extended(kept, counting, first - 20, 1, 4, jax.random.key(5))
-    batch = branches.sample_kept(kept, 1, jax.random.key(4))
+    batch = branches.sample_kept(kept, jax.random.key(4))
     np.testing.assert_array_equal(batch.obs, -29)
+    np.testing.assert_array_equal(batch.reward, -29)
+    assert (batch.action, batch.terminated, batch.next_obs) == (None, None, None)  # not kept
 
 
 def test_a_branch_ends_outside_of_the_real_range() -> None:

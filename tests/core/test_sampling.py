@@ -31,7 +31,8 @@ def test_imagine_equals_a_plain_loop() -> None:
     """With equal noise, every path equals that of a Python loop."""
     x, plan = jnp.array([0.3, -0.2, 0.5]), jnp.arange(8.0).reshape(T, M) / 10
     noise = jax.random.normal(jax.random.key(3), (K, T, M))
-    got = sampling.imagine(step, propose, jnp.zeros(K), x, plan, noise)
+    each = jax.vmap(propose, (0, 0, None, 0))
+    got = sampling.imagine(step, each, jnp.zeros(K), jnp.tile(x, (K, 1)), plan, noise)
     for k in range(K):
         state, carry = x, jnp.float32(0)
         for t in range(T):

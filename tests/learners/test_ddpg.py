@@ -8,8 +8,9 @@ import jax.numpy as jnp
 import pytest
 from jax import Array
 
+from hybrid_rl.core.actor_critic import ActorCriticState
 from hybrid_rl.critics.ensemble_q import EnsembleQ
-from hybrid_rl.learners.ddpg import DDPG, DDPGState
+from hybrid_rl.learners.ddpg import DDPG
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -24,10 +25,10 @@ def learner(**fields: float) -> DDPG:
     return DDPG(TanhGaussian(hidden=(32,)), critic, **(quick | fields))
 
 
-def train(ddpg: DDPG, draw: partial, steps: int) -> DDPGState:
+def train(ddpg: DDPG, draw: partial, steps: int) -> ActorCriticState:
     """The state after `steps` updates on batches that `draw` makes."""
 
-    def one(state: DDPGState, key: Array) -> tuple[DDPGState, None]:
+    def one(state: ActorCriticState, key: Array) -> tuple[ActorCriticState, None]:
         return ddpg.update(state, Params(), draw(key), key)[0], None
 
     keys = jax.random.split(jax.random.key(1), steps)
@@ -42,7 +43,7 @@ def batch(key: Array, terminated: float, truncated: float, best: float) -> Batch
     return Batch(obs, u, reward, terminated * one, truncated * one, obs, u)
 
 
-def value(ddpg: DDPG, state: DDPGState, u: float) -> float:
+def value(ddpg: DDPG, state: ActorCriticState, u: float) -> float:
     """Q at the one state."""
     return float(ddpg.critic.value(state.critic, jnp.zeros(1), jnp.array([u])))
 

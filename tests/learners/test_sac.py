@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 from jax import Array
 
+from hybrid_rl.core.actor_critic import ActorCriticState
 from hybrid_rl.critics.ensemble_q import EnsembleQ
-from hybrid_rl.learners.sac import SAC, SACState
+from hybrid_rl.learners.sac import SAC
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -31,10 +32,10 @@ def learner(**fields: Any) -> SAC:
     )
 
 
-def train(sac: SAC, draw: Any, steps: int) -> SACState:
+def train(sac: SAC, draw: Any, steps: int) -> ActorCriticState:
     """The state after `steps` updates on batches that `draw` makes."""
 
-    def one(state: SACState, key: Array) -> tuple[SACState, None]:
+    def one(state: ActorCriticState, key: Array) -> tuple[ActorCriticState, None]:
         drawing, updating = jax.random.split(key)
         return sac.update(state, Params(), draw(drawing), updating)[0], None
 
@@ -50,7 +51,7 @@ def batch(key: Array, terminated: float, truncated: float, of_action: bool) -> B
     return Batch(obs, u, reward, terminated * one, truncated * one, obs, u)
 
 
-def value(sac: SAC, state: SACState, u: float = 0.0) -> float:
+def value(sac: SAC, state: ActorCriticState, u: float = 0.0) -> float:
     """Q of the smaller critic at the one state."""
     return float(sac.critic.value(state.critic, jnp.zeros(1), jnp.array([u])))
 

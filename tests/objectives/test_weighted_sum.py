@@ -47,14 +47,13 @@ def test_a_weighted_sum_adds_its_terms_and_weights_decay() -> None:
 
 
 def test_a_weighted_sum_of_sums_over_time_is_one() -> None:
-    """It has rewards and returns to go, but not if a weight decays."""
+    """It has returns to go, but not if a weight decays."""
     terms = {"a": Term(1.0), "b": Term(-2.0)}
     objective = WeightedSum(terms, {"a": 3.0, "b": 1.0})
-    np.testing.assert_allclose(objective.rewards(Params(), PATH), PATH.x[:-1, 0])
     to_go = objective.reward_to_go(Params(), PATH)
     np.testing.assert_allclose(to_go, Term(1.0).reward_to_go(Params(), PATH))
     with pytest.raises(ValueError, match="needs constant weights"):
-        WeightedSum(terms, {"a": 1.0, "b": 1.0}, {"a": 0.9}).rewards(Params(), PATH)
+        WeightedSum(terms, {"a": 1.0, "b": 1.0}, {"a": 0.9}).reward_to_go(Params(), PATH)
 
 
 @pytest.mark.parametrize(

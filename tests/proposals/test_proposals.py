@@ -4,11 +4,11 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from jax import Array
 from scipy.stats import multivariate_normal
 
 from hybrid_rl.core import sampling
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
+from hybrid_rl.proposals.knots import KnotsProposal
 from hybrid_rl.proposals.mixture import MixtureProposal
 from hybrid_rl.proposals.noise import NoiseProposal
 from hybrid_rl.proposals.policy import PolicyProposal
@@ -24,18 +24,10 @@ NOISE, BY_POLICY = NoiseProposal(std=0.3), PolicyProposal(POLICY)
 def imagined(proposal: Proposal, samples: int = K) -> sampling.Samples:
     """Candidates in a model x' = x + u."""
     params = Params(policy=POLICY.init(jax.random.key(0), SPEC))
-    carries = jax.vmap(lambda q: proposal.init(SPEC, q))(jnp.arange(samples) / samples)
-    noise = jax.random.normal(jax.random.key(1), (samples, T, SPEC.act))
-    noise = jax.vmap(proposal.shaped)(noise)
-
-    def propose(*of_sample: Array) -> tuple:
-        return proposal(params, *of_sample)
-
-    def step(x: Array, u: Array) -> Array:
-        return x + u
-
-    plan = jnp.full((T, SPEC.act), 0.1)
-    return sampling.imagine(step, propose, carries, jnp.ones(SPEC.obs), plan, noise)
+    both = sampling.Candidates(proposal, samples)
+    plan, key = jnp.full((T, SPEC.act), 0.1), jax.random.key(1)
+    start = jnp.ones(SPEC.obs)
+    return both.imagine(params, lambda x, u: x + u, both.begin(SPEC), start, plan, key)
 
 
 @pytest.mark.parametrize(("share", "count"), [(0.0, 0), (0.25, 2), (0.5, 4), (1.0, 8)])
@@ -46,7 +38,7 @@ def test_a_mixture_has_candidates_of_both_proposals(share, count) -> None:
     for got, first, second in zip(
         jax.tree.leaves(mixed), jax.tree.leaves(one), jax.tree.leaves(two), strict=True
     ):
-        np.testing.assert_array_equal(got[:count], first[:count])
+        np.testing.assert_allclose(got[:count], first[:count], rtol=1e-6)
         np.testing.assert_array_equal(got[count:], second[count:])
 
 
@@ -100,3 +92,14 @@ def test_bad_fields() -> None:
         NoiseProposal(std=0)
     with pytest.raises(ValueError, match=r"correlation=1.0"):
         NoiseProposal(correlation=1.0)
+
+
+def test_each_part_of_a_mixture_is_evaluated_for_its_own_candidates_alone() -> None:
+    """Also of a mixture in a mixture: of eight, two by the policy, two by noise, four by knots."""
+    mixed = MixtureProposal(MixtureProposal(BY_POLICY, NOISE, 0.25), KnotsProposal(2))
+    drawn = sampling.Candidates(mixed, K)
+    assert [(part, len(own)) for part, own in drawn.parts] == [
+        (BY_POLICY, 2),
+        (NOISE, 2),
+        (KnotsProposal(2), 4),
+    ]

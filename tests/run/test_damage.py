@@ -116,7 +116,7 @@ def test_a_world_that_breaks_is_named_and_can_be_mended(copied, monkeypatch, cap
 
     def step(world, state, action):
         now = sound(world, state, action)
-        broken = state.info["decision"] >= 50
+        broken = state.clock.decision >= 50
         return now.replace(reward=jnp.where(broken, jnp.nan, now.reward))
 
     folder = copied.with_name("broken")

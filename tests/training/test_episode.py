@@ -59,7 +59,7 @@ def test_repeat_adds_rewards_until_the_end(end: int, total: float) -> None:
     episode = Episode(Counter(end=end), steps=100, action_repeat=3)
     assert episode.spec.dt == pytest.approx(0.3)
     state = roll(episode, 2)
-    assert float(state.info["return"]) == total
+    assert float(state.clock.total) == total
     assert bool(state.terminated) == (end <= 6)
 
 
@@ -76,7 +76,7 @@ def test_auto_reset_works_under_two_vmaps() -> None:
     fresh = jax.vmap(jax.vmap(episode.reset))(keys)
     want = jnp.where(done[..., None], fresh.obs, state.obs)
     np.testing.assert_array_equal(reset.obs, want)
-    np.testing.assert_array_equal(reset.info["decision"], jnp.where(done, 0, 3))
+    np.testing.assert_array_equal(reset.clock.decision, jnp.where(done, 0, 3))
 
 
 def test_resets_are_skipped_while_no_environment_is_done() -> None:
@@ -158,9 +158,9 @@ class Sum(Counter):
 def test_a_world_that_steps_from_its_observation_knows_no_noise() -> None:
     """Nor does a reward of two observations."""
     episode = Episode(Sum(), sensor_noise=0.5, reward=Sum(), action_repeat=2)
-    assert float(roll(episode, 3).info["return"]) == 0
+    assert float(roll(episode, 3).clock.total) == 0
     start, state = Episode(Sum()).reset(jax.random.key(0)), roll(episode, 3)
-    assert float(state.info["true_obs"][0]) == float(start.obs[0]) != float(state.obs[0])
+    assert float(state.clock.true_obs[0]) == float(start.obs[0]) != float(state.obs[0])
 
 
 def test_actions_arrive_with_noise() -> None:

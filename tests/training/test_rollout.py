@@ -68,7 +68,7 @@ def test_a_rollout_is_the_episode_of_the_evaluation() -> None:
     episode = Episode(Walk(), steps=5)
     got = evaluate_episodes(episode, Draws(), Params(), keys)
     one = jax.vmap(lambda key: rollout(episode, Draws(), Params(), key, 5))
-    np.testing.assert_array_equal(one(keys).info["return"][:, -1], got["return"])
+    np.testing.assert_array_equal(one(keys).clock.total[:, -1], got["return"])
 
 
 def test_an_evaluation_goes_on_where_it_paused() -> None:
@@ -77,9 +77,9 @@ def test_an_evaluation_goes_on_where_it_paused() -> None:
     episode = Episode(Walk(), steps=5)
     more = jax.jit(partial(advance, episode, Draws(), Params()))
     paused = more(begin(episode, Draws(), keys), jnp.int32(2))
-    assert set(np.asarray(paused[0].info["decision"])) == {2}
+    assert set(np.asarray(paused[0].clock.decision)) == {2}
     whole = evaluate_episodes(episode, Draws(), Params(), keys)
-    np.testing.assert_array_equal(more(paused, jnp.int32(9))[0].info["return"], whole["return"])
+    np.testing.assert_array_equal(more(paused, jnp.int32(9))[0].clock.total, whole["return"])
 
 
 def test_an_evaluation_of_a_task_without_success_has_none() -> None:

@@ -97,7 +97,7 @@ def test_bodies_that_episodes_draw_act_in_the_window():
     one.advance()
     mass = one.state.data.fields["body_mass"] / one.cast.world.episode.env._body.model.body_mass
     assert 2 <= mass[1] <= 3
-    assert one.state.info["decision"] == 1
+    assert one.state.clock.decision == 1
 
 
 def test_a_world_without_a_hash_is_shown(monkeypatch):
@@ -118,10 +118,10 @@ def test_another_body_acts_between_two_decisions_and_a_bad_one_never():
     assert one.state.data.asset != trained.read("cartpole").episode.env._body.asset
     np.testing.assert_array_equal(one.state.data.qpos, before)  # goes on, no new episode
     one.advance()
-    assert one.state.info["decision"] == 2
+    assert one.state.clock.decision == 2
     one.choose(Choice("policy", changes={"episode.delay": "2"}))  # has another state
     settle(one)
-    assert one.state.info["late"].shape == (2, 1)
+    assert one.state.clock.late.shape == (2, 1)
     one.choose(Choice("policy", changes={"env.mass": "-1"}))
     settle(one)
     assert "mass=-1" in one.problem

@@ -1,0 +1,202 @@
+"""What is put around an environment, each an environment itself; `Episode` puts them together.
+
+    Sensed(Delayed(Disturbed(Constrained(Limited(Repeated(Paid(Randomised(env))))))))
+
+A wrapper keeps what it remembers in the `Clock` of the state. The outer ones see what the inner
+ones made: a limit counts rewards before a constraint's price, a constraint judges the action that
+arrived and the observation without noise.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.core.batching import where
+from hybrid_rl.envs import sensor_noise
+from hybrid_rl.envs.mujoco.randomised import Ranges
+from hybrid_rl.protocols import Constraint, Env, Goal
+from hybrid_rl.types import Clock, EnvState, Spec
+
+VIOLATED = "violation"  # in `metrics`: 1 where the decision violates the constraint, else 0
+
+
+@dataclass(frozen=True)
+class Around:
+    """An environment around another one, from which it differs in nothing yet."""
+
+    env: Env
+
+    @property
+    def spec(self) -> Spec:
+        """Its sizes, and the time between decisions."""
+        return self.env.spec
+
+    def reset(self, key: Array) -> EnvState:
+        """The first state of an episode; outer wrappers use other parts of the key."""
+        return jax.tree.map(jnp.asarray, self.env.reset(key))  # of Python's numbers, too
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """The state one decision later. action: [m]."""
+        return jax.tree.map(jnp.asarray, self.env.step(state, action))
+
+
+@dataclass(frozen=True)
+class Randomised(Around):
+    """Each episode has another body (`envs.mujoco.randomised`)."""
+
+    ranges: Ranges
+
+    def reset(self, key: Array) -> EnvState:
+        """The first state, with a body of its own."""
+        state = super().reset(key)
+        data = self.ranges.draw(state.data, self.spec.act, jax.random.fold_in(key, 7))
+        return state.replace(data=data)
+
+
+@dataclass(frozen=True)
+class Paid(Around):
+    """The reward is that of a goal."""
+
+    goal: Goal
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """The state one decision later, paid by the goal."""
+        now, u = super().step(state, action), jnp.clip(action, -1.0, 1.0)
+        return now.replace(reward=self.goal.reward_of(state.obs, u, now.obs))
+
+
+@dataclass(frozen=True)
+class Repeated(Around):
+    """An action is repeated, and the rewards are added until the environment terminates."""
+
+    times: int
+
+    @property
+    def spec(self) -> Spec:
+        """Its sizes, and the time between decisions."""
+        return self.env.spec._replace(dt=self.env.spec.dt * self.times)
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """The state after the repeats."""
+
+        def again(_: int, now: EnvState) -> EnvState:
+            after = super(Repeated, self).step(now, action)
+            after = after.replace(reward=now.reward + after.reward)
+            return where(now.terminated, now, after)
+
+        now = super().step(state, action)
+        return jax.lax.fori_loop(1, self.times, again, now) if self.times > 1 else now
+
+
+@dataclass(frozen=True)
+class Limited(Around):
+    """A time limit, and the clock."""
+
+    steps: int  # decisions
+
+    def reset(self, key: Array) -> EnvState:
+        """The first state, with a new clock."""
+        return super().reset(key).replace(clock=Clock(jnp.zeros((), jnp.int32), jnp.zeros(())))
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """The state one decision later; the clock goes on."""
+        now, before = super().step(state, action), state.clock
+        clock = before._replace(decision=before.decision + 1, total=before.total + now.reward)
+        truncated = (clock.decision >= self.steps) & ~now.terminated
+        info = {**state.info, **now.info}  # also what `step` left out
+        return now.replace(truncated=truncated, info=info, clock=clock)
+
+
+@dataclass(frozen=True)
+class Constrained(Around):
+    """Violations of a constraint are counted, and their price is taken from the reward."""
+
+    limit: Constraint
+
+    def reset(self, key: Array) -> EnvState:
+        """The first state, without violations."""
+        state = super().reset(key)
+        clock = state.clock._replace(violations=jnp.zeros(()))
+        return state.replace(metrics={**state.metrics, VIOLATED: jnp.zeros(())}, clock=clock)
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """The state one decision later, judged by the observations before and after it."""
+        now, u = super().step(state, action), jnp.clip(action, -1.0, 1.0)
+        violated = (self.limit.excess(state.obs, u, now.obs) > 0).astype(now.reward.dtype)
+        return now.replace(
+            reward=now.reward - self.limit.price * violated,
+            metrics={**now.metrics, VIOLATED: violated},
+            clock=now.clock._replace(violations=state.clock.violations + violated),
+        )
+
+
+@dataclass(frozen=True)
+class Disturbed(Around):
+    """Gaussian noise is added to each action, which is then clipped."""
+
+    std: float  # [u]
+
+    def reset(self, key: Array) -> EnvState:
+        """The first state, with the key of the next noise."""
+        state, data = super().reset(key), jax.random.key_data(jax.random.fold_in(key, 6))
+        return state.replace(clock=state.clock._replace(disturbing=data))
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """The state after the action with noise."""
+        now, later = jax.random.split(jax.random.wrap_key_data(state.clock.disturbing))
+        noise = self.std * jax.random.normal(now, action.shape, action.dtype)
+        clock = state.clock._replace(disturbing=jax.random.key_data(later))
+        return super().step(state.replace(clock=clock), jnp.clip(action + noise, -1.0, 1.0))
+
+
+@dataclass(frozen=True)
+class Delayed(Around):
+    """Actions arrive later; the first are 0."""
+
+    decisions: int
+
+    def reset(self, key: Array) -> EnvState:
+        """The first state, with actions on their way."""
+        state, late = super().reset(key), jnp.zeros((self.decisions, self.spec.act))
+        return state.replace(clock=state.clock._replace(late=late))
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """The state after the action that arrives."""
+        late = jnp.concatenate((state.clock.late, action[None]))
+        clock = state.clock._replace(late=late[1:])
+        return super().step(state.replace(clock=clock), late[0])
+
+
+@dataclass(frozen=True)
+class Sensed(Around):
+    """A controller sees the observation with Gaussian noise; the environment does not."""
+
+    std: tuple[float, ...]  # one of all entries, or one each
+
+    def reset(self, key: Array) -> EnvState:
+        """The first state, seen with noise."""
+        return self._seen(super().reset(key), jax.random.fold_in(key, 5))
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """The state one decision later, seen with noise."""
+        key = jax.random.wrap_key_data(state.clock.sensing)
+        return self._seen(super().step(state.replace(obs=state.clock.true_obs), action), key)
+
+    def _seen(self, state: EnvState, key: Array) -> EnvState:
+        obs, later = sensor_noise.added(state.obs, self.std, key)
+        return state.replace(obs=obs, clock=state.clock._replace(true_obs=state.obs, sensing=later))
+
+
+def put_around(env: Env, episode: Any) -> Env:
+    """The environment with everything that an `episode` puts around it."""
+    e, std = episode, episode.std
+    env = env if e.randomise is None else Randomised(env, e.randomise)
+    env = env if e.reward is None else Paid(env, e.reward)
+    env = Limited(Repeated(env, e.action_repeat), e.steps)
+    env = env if e.constraint is None else Constrained(env, e.constraint)
+    env = Disturbed(env, e.action_noise) if e.action_noise else env
+    env = Delayed(env, e.delay) if e.delay else env
+    return Sensed(env, std) if any(std) else env
