@@ -29,7 +29,7 @@ class Branches:
 
     x: Array  # [B, n] the states that the branches have reached
     age: Array  # [B] int32 decisions of each branch so far
-    rows: Batch  # [memory / B, B, ...] the last transitions; None: what nobody uses
+    rows: Batch  # [memory / B, B, ...] the last transitions; None: what is not used
     count: Array  # [] int32 updates so far
 
     def restarted(self) -> "Branches":

@@ -31,7 +31,7 @@ def test_another_goal_begins_a_new_return(server: ViserServer, monkeypatch):
     for tipped in (False, True):
         monkeypatch.setattr(Scene, "tipped", tipped)
         session._decide()
-        decided = int(session.player.state.info["decision"])
+        decided = int(session.player.state.clock.decision)
         assert session.player.state.info["return"] != 0
         goal = "" if session.wishes.choice.reward else "height"
         session.wishes.choice = replace(session.wishes.choice, reward=goal)
