@@ -4,11 +4,10 @@ import math
 import shutil
 import signal
 import time
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from hydra.core.utils import JobReturn, JobStatus
+from hydra.core.singleton import Singleton
 
 from hybrid_rl.cli import interrupt
 from hybrid_rl.composition import SLURM
@@ -28,55 +27,52 @@ def require_slurm(launcher: str) -> None:
         )
 
 
-@contextmanager
-def watch(results: dict[int, Result]) -> Iterator[None]:
-    """Print a line when a job of Submitit is sent, begins and ends.
+def launch(
+    launcher: Any, jobs: Sequence[list[str]], first: int, results: dict[int, Result]
+) -> None:
+    """Run `jobs`, numbered from `first`; print a line when one is sent, begins and ends.
 
-    A lost job, whose process was killed, for example, counts as failed.
+    launcher: one of Submitit's. A lost job, whose process was killed, for example, has failed.
     """
-    import submitit
     from submitit.core.utils import FailedJobError
 
-    send = submitit.AutoExecutor.map_array
-
-    def map_array(executor: Any, function: Any, *lists: Sequence[Any]) -> list[_Ended]:
-        try:
-            sent = send(executor, function, *lists)
-        except FailedJobError as error:
-            reason = str(error).strip().replace("\n", "; ")
-            key = f"hydra/launcher=submitit_{executor.cluster}"
-            raise UsageError(f"{key}: the jobs could not be sent: {reason}") from error
-        jobs = dict(zip(lists[2], sent, strict=True))
-        for number, job in jobs.items():
-            print(f"job {number} sent: {executor.cluster} {job.job_id}", flush=True)
-        with interrupt.as_exception(PATIENCE + 5):
-            try:
-                _wait(jobs, results)
-            except BaseException:
-                if interrupt.cause() == signal.SIGHUP:  # jobs elsewhere need no terminal
-                    raise
-                for job in jobs.values():
-                    job.cancel(check=False)
-                _wait(jobs, results, PATIENCE)
-                raise
-        return [_Ended(results[number]) for number in jobs]
-
-    submitit.AutoExecutor.map_array = map_array
+    executor = _executor(launcher.params, launcher._EXECUTOR)
+    numbers, state = range(first, first + len(jobs)), Singleton.get_state()
+    calls = [
+        (job, "hydra.sweep.dir", n, f"{n}", state) for n, job in zip(numbers, jobs, strict=True)
+    ]
     try:
-        yield
-    finally:
-        submitit.AutoExecutor.map_array = send
+        sent = executor.map_array(launcher, *zip(*calls, strict=True))
+    except FailedJobError as error:
+        reason = str(error).strip().replace("\n", "; ")
+        key = f"hydra/launcher=submitit_{executor.cluster}"
+        raise UsageError(f"{key}: the jobs could not be sent: {reason}") from error
+    running = dict(zip(numbers, sent, strict=True))
+    for number, job in running.items():
+        print(f"job {number} sent: {executor.cluster} {job.job_id}", flush=True)
+    with interrupt.as_exception(PATIENCE + 5):
+        try:
+            _wait(running, results)
+        except BaseException:
+            if interrupt.cause() == signal.SIGHUP:  # jobs elsewhere need no terminal
+                raise
+            for job in running.values():
+                job.cancel(check=False)
+            _wait(running, results, PATIENCE)
+            raise
 
 
-class _Ended:
-    """A job of Submitit's that has ended."""
+def _executor(params: Mapping[str, Any], cluster: str) -> Any:
+    """What sends jobs to `cluster`, with the settings of hydra.launcher."""
+    import submitit
+    from hydra_plugins.hydra_submitit_launcher.config import BaseQueueConf
 
-    def __init__(self, result: Result) -> None:
-        self.result = result
-
-    def results(self) -> list[JobReturn]:
-        """The result in the form that Hydra's launcher expects."""
-        return [JobReturn(_return_value=self.result, status=JobStatus.COMPLETED)]
+    of_all = BaseQueueConf.__dataclass_fields__
+    given = {key if key in of_all else f"{cluster}_{key}": value for key, value in params.items()}
+    made = {key: given.pop(key) for key in (f"{cluster}_max_num_timeout",) if key in given}
+    executor = submitit.AutoExecutor(given.pop("submitit_folder"), cluster=cluster, **made)
+    executor.update_parameters(**given)
+    return executor
 
 
 def _wait(jobs: dict[int, Any], results: dict[int, Result], most: float = math.inf) -> None:

@@ -9,7 +9,7 @@ import json
 import sys
 import traceback
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import nullcontext, suppress
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +26,7 @@ from hybrid_rl import overrides as words
 from hybrid_rl.checks import check
 from hybrid_rl.cli import command, hydra_line
 from hybrid_rl.cli.combinations import jobs_of, labels
-from hybrid_rl.cli.submitted import Result, require_slurm, watch
+from hybrid_rl.cli.submitted import Result, launch, require_slurm
 from hybrid_rl.composition import concerns, explain
 from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import forced, of_job, parse, quoted, raw_values, typed
@@ -123,10 +123,12 @@ class Sweeper:
         print(f"sweep of {len(jobs)} jobs: {folder}", flush=True)
         results, size = self.task.results, self.max_batch_size or len(jobs)
         try:
-            with nullcontext() if here(self.config.hydra) else watch(results):
-                for first in range(0, len(jobs), size):
-                    some = [self._forced(job) for job in jobs[first : first + size]]
+            for first in range(0, len(jobs), size):
+                some = [self._forced(job) for job in jobs[first : first + size]]
+                if here(self.config.hydra):
                     self.launcher.launch(some, first)
+                else:
+                    launch(self.launcher, some, first, results)
         finally:
             _report(folder, self.task.labels, jobs, results)
         worst = max(result["code"] for result in results.values())
