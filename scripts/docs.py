@@ -80,17 +80,25 @@ and a planner that acts with both, in JAX and MuJoCo.
 * **[Bring your own](docs/howto.md)**: robot, task, method or planner
 """  # the first page, on which robots run on a click
 NOTEBOOKS = [f"docs/notebooks/{path.stem}" for path in sorted(ROOT.glob("docs/notebooks/*.ipynb"))]
-PAGES = {
-    "Start": [
-        *("First page <self>", "Getting started <README>", "docs/concepts", "docs/which_method"),
-        *("New goals <docs/results/planning>", "docs/howto"),
-        *("docs/not_learning", "docs/python", "docs/faq"),
-        *("docs/files", "docs/renamed", "CONTRIBUTING"),
+PAGES = {  # of the side bar, by what a reader asks
+    "How do I begin?": [
+        *("First page <self>", "Getting started <README>", "docs/concepts"),
+        "Which method? <docs/which_method>",
     ],
-    "Notebooks": NOTEBOOKS,
-    "Methods": ["docs/methods", "docs/tasks", "All methods <methods/index>"],
-    "Results": ["docs/atlas", "docs/results/README"],
-    "Reference": ["Reference <reference/index>", "CHANGELOG", "Software paper <paper/paper>"],
+    "Can it do another task?": [
+        *("New goals <docs/results/planning>", "Your own robot, task, method <docs/howto>"),
+        *("docs/tasks", "CONTRIBUTING"),
+    ],
+    "How do I train and deploy?": [
+        *("Train, and look <docs/howto_train>", "To a robot <docs/howto_deploy>"),
+        *("From Python <docs/python>", "docs/not_learning", "docs/faq", "docs/files"),
+    ],
+    "How well does it work?": ["docs/results/README", "docs/atlas"],
+    "How does it work?": ["docs/methods", "All methods <methods/index>", *NOTEBOOKS],
+    "What is it called?": [
+        *("Reference <reference/index>", "docs/renamed", "CHANGELOG"),
+        "Software paper <paper/paper>",
+    ],
 }
 
 

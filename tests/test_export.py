@@ -205,7 +205,7 @@ def test_the_functions_of_numpy_and_c_refuse_what_is_not_finite(tmp_path):
 
 def test_the_node_of_the_how_to_publishes_only_what_a_fresh_observation_gives(monkeypatch):
     """Without ROS: the safe action before the first observation and after a stale one."""
-    page = (Path(__file__).parents[1] / "docs" / "howto.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[1] / "docs" / "howto_deploy.md").read_text(encoding="utf-8")
     code = page.split("## A trained policy on a robot")[1].split("```python\n")[1].split("```")[0]
     clock, sent = SimpleNamespace(now=0.0), []
 
@@ -236,7 +236,7 @@ def test_the_node_of_the_how_to_publishes_only_what_a_fresh_observation_gives(mo
     for name, module in stubs.items():
         monkeypatch.setitem(sys.modules, name, module)
     names: dict = {}
-    exec(compile(code, "howto.md", "exec"), names)
+    exec(compile(code, "howto_deploy.md", "exec"), names)
     node = names["Policy"]()
     ((period, decide),), observe = node.timers, node.topics["joint_states"]
     for age, value in ((0.0, None), (0.02, 1.0), (0.2, None), (0.0, np.nan)):

@@ -30,6 +30,7 @@ pytestmark = pytest.mark.turns(3)
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 HOWTO = (ROOT / "docs" / "howto.md").read_text(encoding="utf-8")
+DEPLOY = (ROOT / "docs" / "howto_deploy.md").read_text(encoding="utf-8")
 WHICH = (ROOT / "docs" / "which_method.md").read_text(encoding="utf-8")
 
 
@@ -253,7 +254,7 @@ def test_a_stack_of_observations_is_one_class(conf, tmp_path):
 
 def test_a_robot_is_one_class(conf, tmp_path):
     """It begins where `reset` leads, is paid by its own rule, and is at rest in the end."""
-    (code,) = blocks("A robot in real time", HOWTO)
+    (code,) = blocks("A robot in real time", DEPLOY)
     (tmp_path / "my_robot.py").write_text(code)
     small = ["policy.hidden=[8]", "critic.hidden=[8]", "policy_learner.batch_size=4"]
     line = ["task=robot", "env.make=my_robot:Arm", "algo=sac", "random_steps=0", "total_steps=100"]

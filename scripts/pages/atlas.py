@@ -129,7 +129,7 @@ def claims(names: str) -> str:
 def entry_text(name: str, entry: dict[str, Any]) -> str:
     """The part of the page about one figure or table."""
     verdict, shows = entry["verdict"], filled(entry["shows"]).strip()
-    text = f"### {name}: {entry['title']}\n\n{entry['claim']}\n\n"
+    text = f"### {name}: {entry['title']}\n\n"
     verdict = f"{verdict.capitalize()}{', with' if verdict == 'holds in part' else ':'}"
     text += f"**{verdict}** {shows} [More]({entry['page']})\n"
     if entry["results"]:

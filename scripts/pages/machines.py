@@ -1,6 +1,5 @@
-"""The machines of the results: docs/results/machines.yaml, and its table on README.md there."""
+"""The machines of the results: docs/results/machines.yaml."""
 
-import re
 from fnmatch import fnmatch
 from functools import cache
 from typing import Any
@@ -23,12 +22,3 @@ def machine(stem: str) -> str:
         if fnmatch(stem, file.split(" (")[0]):
             return found
     raise ValueError(f"docs/results/machines.yaml has no machine of {stem}")
-
-
-def table() -> str:
-    """Machine, precision and files, in the order of the YAML."""
-    rows = ["| machine | precision of matrix products | files |", "|---|---|---|"]
-    for entry in entries():
-        files = ", ".join(re.sub(r"^\S+", r"`\g<0>`", file) for file in entry["files"])
-        rows.append(f"| {entry['machine']} | {entry['precision']} | {files} |")
-    return "\n".join(rows) + "\n"
