@@ -85,8 +85,8 @@ class Player:
 
     def forget_return(self) -> None:
         """Count the return from here on."""
-        before = self.state.info["return"]
-        self.state = self.state.replace(info={**self.state.info, "return": jnp.zeros_like(before)})
+        clock = self.state.clock
+        self.state = self.state.replace(clock=clock._replace(total=jnp.zeros_like(clock.total)))
 
     def choose(self, choice: Choice) -> None:
         """Show this as soon as its programs are ready."""

@@ -32,14 +32,14 @@ def test_another_goal_begins_a_new_return(server: ViserServer, monkeypatch):
         monkeypatch.setattr(Scene, "tipped", tipped)
         session._decide()
         decided = int(session.player.state.clock.decision)
-        assert session.player.state.info["return"] != 0
+        assert session.player.state.clock.total != 0
         goal = "" if session.wishes.choice.reward else "height"
         session.wishes.choice = replace(session.wishes.choice, reward=goal)
         until(lambda goal=goal: session._grant() or session.player.cast.choice.reward == goal)
-        info = session.player.state.info
-        assert info["return"] == 0
+        clock = session.player.state.clock
+        assert clock.total == 0
         assert len(session._history.curve("reward")[1]) == 0
-        assert info["decision"] == (0 if tipped else decided)
+        assert clock.decision == (0 if tipped else decided)
         assert ("tipped over" in session._line()) == tipped
     session.player.close()
 
