@@ -26,7 +26,7 @@ from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import Params, Spec, Transition
 
 sys.path.insert(0, str(Path(__file__).parent / "broken"))
-from faulty_world import KINDS, Faulty
+from faulty_world import KINDS, Faulty  # pyright: ignore[reportMissingImports]
 
 NATIVE = {"physics": "native"}
 TASKS: dict[str, tuple[str, tuple[int, ...], int, int, dict[str, str]]] = {
@@ -62,6 +62,10 @@ class Tried:
     def init(self, spec: Spec) -> tuple[Array, Array, Array]:
         """Weights [1+o, m] and noise [], and whether they are drawn."""
         return jnp.zeros((1 + spec.obs, spec.act)), jnp.zeros(()), jnp.zeros((), bool)
+
+    def greedy(self) -> "Tried":
+        """Itself."""
+        return self
 
     def act(self, params: Params, state: tuple, obs: Array, key: Array) -> tuple[Any, ...]:
         """Action [m], the state, no metrics. noise > 1: uniform."""

@@ -66,13 +66,13 @@ class TrainedPolicy:
             obs = self._flat(obs)
         o = self.spec.obs
         try:
-            obs = np.asarray(obs, np.float32)
-            found = "" if obs.ndim in (1, 2) and obs.shape[-1] == o else str(obs.shape)
+            rows = np.asarray(obs, np.float32)
+            found = "" if rows.ndim in (1, 2) and rows.shape[-1] == o else str(rows.shape)
         except (TypeError, ValueError):
-            found = "no array of numbers, as (obs, info) of env.reset() is none"
-        if found:
+            rows, found = None, "no array of numbers, as (obs, info) of env.reset() is none"
+        if rows is None or found:
             raise ValueError(f"obs is {found}; it must be [{o}] or [N, {o}]")
-        rows = np.atleast_2d(obs)
+        rows = np.atleast_2d(rows)
         check_finite("obs", rows)
         if self._state is None:
             self._worlds = len(rows)
