@@ -66,13 +66,13 @@ class TrainedPolicy:
             obs = self._flat(obs)
         o = self.spec.obs
         try:
-            rows = np.asarray(obs, np.float32)
-            found = "" if rows.ndim in (1, 2) and rows.shape[-1] == o else str(rows.shape)
+            values = np.asarray(obs, np.float32)
+            found = "" if values.ndim in (1, 2) and values.shape[-1] == o else str(values.shape)
         except (TypeError, ValueError):
-            rows, found = None, "no array of numbers, as (obs, info) of env.reset() is none"
-        if rows is None or found:
+            values, found = None, "no array of numbers, as (obs, info) of env.reset() is none"
+        if values is None or found:
             raise ValueError(f"obs is {found}; it must be [{o}] or [N, {o}]")
-        rows = np.atleast_2d(rows)
+        rows = np.atleast_2d(values)
         check_finite("obs", rows)
         if self._state is None:
             self._worlds = len(rows)
@@ -80,5 +80,5 @@ class TrainedPolicy:
         if len(rows) != self._worlds:
             raise ValueError(f"obs of {len(rows)} worlds after {self._worlds}; reset() first")
         u, self._state, self._key = self._act(self._state, rows, self._key)
-        u = np.asarray(u).reshape(*obs.shape[:-1], self.spec.act)
+        u = np.asarray(u).reshape(*values.shape[:-1], self.spec.act)
         return u if self._span is None else self._span[0] + self._span[1] * np.clip(u, -1, 1)
