@@ -17,7 +17,6 @@ if __name__ == "__main__":
     interrupt.install()
 
 import ast
-import difflib
 import inspect
 import json
 import sys
@@ -39,6 +38,7 @@ from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.files.reading import json_file
 from hybrid_rl.run.logs.records import arrays, json_value
 from hybrid_rl.run.machine.jax_settings import prepare
+from hybrid_rl.settings.complete import nearest
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -109,8 +109,7 @@ def study_of(name: str) -> Study:
         reason = user_line(error) or f"cannot be imported ({error})"
         raise UsageError(f"study={name}: {reason}") from error
     if study is None:
-        close = difflib.get_close_matches(name, known, n=1)
-        hint = f" (did you mean {close[0]}?)" if close else ""
+        hint = f" (did you mean {near}?)" if (near := nearest(name, known)) else ""
         raise UsageError(
             f"study={name}: unknown; choose one of {', '.join(known)}, or a module of yours{hint}"
         )

@@ -5,7 +5,6 @@ config.yaml, such as controllers.full.horizon, or by the last names of that key,
 full.horizon or horizon. Runs of older versions are read, too.
 """
 
-import difflib
 import glob
 import json
 from collections.abc import Iterable, Mapping, Sequence
@@ -20,6 +19,7 @@ from hybrid_rl.checks import SECTIONS
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.files.reading import Loader, lines, yaml_file
 from hybrid_rl.run.logs.records import COORDINATES, WORD, flatten_keys, row_of, summary_of
+from hybrid_rl.settings.complete import nearest
 
 NOT_METRICS = (*COORDINATES, WORD)  # of a row; every other name is a metric
 # Keys in which runs of the same settings may differ: which learners they hold, how long they run,
@@ -32,7 +32,6 @@ NOT_SETTINGS = (
 NOT_SETTINGS_ANYWHERE = ("physics",)  # implementations of the same equations
 UNSET, SET = "unset", "set"  # for a key that only some of the runs have, and for a group of keys
 MOST_KEYS, MOST_CHARACTERS = 3, 40  # of a label; beyond that it is a letter
-MOST_SUGGESTED = 4  # keys in one message
 
 
 @dataclass(frozen=True)
@@ -118,12 +117,9 @@ class RunFolder:
 
     def _near(self, key: str) -> str:
         """A suggestion of keys that exist, for one that does not."""
-        last = key.rpartition(".")[2]
-        leaves = {name.rpartition(".")[2] for name in self.settings} - {"_target_"}
-        close = difflib.get_close_matches(last, leaves, n=1)
-        names = [name for name in self.settings if name.rpartition(".")[2] in close]
-        names.sort(key=lambda name: name.count("."))
-        return f"; it has {', '.join(names[:MOST_SUGGESTED])}" if names else ""
+        names = sorted(self.settings, key=lambda name: name.count("."))
+        near = nearest(key.rpartition(".")[2], (n for n in names if not n.endswith("_target_")))
+        return f"; it has {near}" if near else ""
 
 
 def _matches(settings: Mapping[str, Any], key: str) -> dict[str, Any]:

@@ -1,6 +1,5 @@
 """key=value arguments of a command, declared once for parsing, checks and --help."""
 
-import difflib
 import inspect
 import math
 import sys
@@ -12,6 +11,7 @@ from typing import Any
 
 from hybrid_rl.conf_files import MODES
 from hybrid_rl.errors import UsageError
+from hybrid_rl.settings.complete import nearest
 
 Kind = Callable[[str, str], Any]  # (name, text) -> value
 HELP = ("--help", "-h")
@@ -197,8 +197,7 @@ def _refusal(
     if "run" in named and Path(given).is_dir():
         return f"{given}: write run={given}"
     keys = ", ".join([*named, *(f"{group}.*" for group in groups)])
-    close = difflib.get_close_matches(name, named, n=1)
-    hint = f" (did you mean {close[0]}?)" if close else ""
+    hint = f" (did you mean {near}?)" if (near := nearest(name, named)) else ""
     if not keys:
         return f"{given}: unknown argument; this command takes none"
     return f"{given}: unknown argument; give key=value with {keys}{hint}"

@@ -72,7 +72,7 @@ class Job:
             copies = [loggers.KINDS[name](run_dir, run.seeds, settings) for name in names]
             if output.on_row is not None:
                 more = {"run_dir": str(run_dir)} if len(self.runs) > 1 else {}
-                copies.append(output.on_row.of(more))
+                copies.append(loggers.Named(output.on_row, more))
             stack.enter_context(naming(run_dir))
             logs.append(stack.enter_context(RunLog(run_dir, run.seeds, copies)))
         return logs

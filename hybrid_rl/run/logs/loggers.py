@@ -18,7 +18,7 @@ from contextlib import redirect_stdout
 from importlib import import_module
 from io import StringIO
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from hybrid_rl.drafts import open_own, own_folder
 from hybrid_rl.errors import FAULTS, CheckpointError, UsageError, install
@@ -30,8 +30,8 @@ PACKAGES = ("wandb", "trackio")  # extras of the same name
 TRACKIO = ("TRACKIO_DIR", "runs/trackio")  # read by Trackio when it is imported
 
 
-class Logger(Protocol):
-    """Where rows go. Subclasses leave out what they have nothing to do for."""
+class Logger:
+    """A place for rows; subclasses leave out methods for which they have nothing to do."""
 
     def rewind(self, rows: Iterable[Row], step: int) -> None:
         """Keep these rows only: the run continues after them, at `step`."""
@@ -102,7 +102,7 @@ class Lines(Logger):
 class CSV(Logger):
     """metrics.csv in `folder`."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, *_: object) -> None:
         self._path = folder / "metrics.csv"
         new = not self._path.exists()
         self._file = open_own(self._path, "a", buffering=1, encoding="ascii", newline="")
@@ -241,10 +241,6 @@ class Callback(Logger):
         self.ask: Callable[[int], None] = lambda number: None
         self.problem: BaseException | None = None
 
-    def of(self, more: Row) -> "Logger":
-        """The logger that adds `more` to each row; itself if there is none."""
-        return _Named(self, more) if more else self
-
     def write(self, row: Row) -> None:
         """Call the function."""
         if self.problem is not None:
@@ -258,8 +254,8 @@ class Callback(Logger):
             self.ask(0)
 
 
-class _Named(Logger):
-    """Hands rows on with more in them."""
+class Named(Logger):
+    """Hands rows on to `logger`, with `more` in them."""
 
     def __init__(self, logger: Logger, more: Row) -> None:
         self._logger, self._more = logger, more
@@ -269,11 +265,7 @@ class _Named(Logger):
         self._logger.write(row | self._more)
 
 
-KINDS: dict[str, Callable[[Path, Sequence[int], dict[str, Any]], Logger]] = {
-    "csv": lambda folder, *_: CSV(folder),
-    "wandb": WandB,
-    "trackio": Trackio,
-}
+KINDS = {"csv": CSV, "wandb": WandB, "trackio": Trackio}
 
 
 def check(given: Any) -> tuple[str, ...]:

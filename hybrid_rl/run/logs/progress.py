@@ -11,7 +11,7 @@ from typing import Self
 
 from rich.console import Console, Group
 from rich.live import Live
-from rich.progress import BarColumn, Task, TextColumn
+from rich.progress import BarColumn, TextColumn
 from rich.progress import Progress as Bar
 from rich.text import Text
 
@@ -81,7 +81,7 @@ class Progress:
             self._bar = Bar(
                 TextColumn("{task.description}", style="bold"),
                 BarColumn(bar_width=None),
-                _Count("{task.completed}"),
+                TextColumn("{task.completed:,.0f}/{task.total:,.0f}", style="green"),
                 console=console,
                 expand=True,
             )
@@ -202,13 +202,6 @@ class Silent(Progress):
 
     def note(self, text: str) -> None:
         """Print nothing."""
-
-
-class _Count(TextColumn):
-    """The steps: 1,000/2,000."""
-
-    def render(self, task: Task) -> Text:
-        return Text(f"{int(task.completed):,}/{int(task.total or 0):,}", style="green")
 
 
 def rate(value: float) -> str:
