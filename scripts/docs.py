@@ -90,7 +90,7 @@ PAGES = {  # of the side bar, by what a reader asks
         *("docs/tasks", "CONTRIBUTING"),
     ],
     "How do I train and deploy?": [
-        *("Train, and look <docs/howto_train>", "To a robot <docs/howto_deploy>"),
+        *("Train and show <docs/howto_train>", "To a robot <docs/howto_deploy>"),
         *("From Python <docs/python>", "docs/not_learning", "docs/faq", "docs/files"),
     ],
     "How well does it work?": ["docs/results/README", "docs/atlas"],

@@ -113,19 +113,6 @@ def _cell(name: str, entry: dict[str, Any]) -> str:
     return (shown if picture(entry) else "") + text
 
 
-def claims(names: str) -> str:
-    """For a page of results: claims and verdicts of a chapter, or of figures after commas."""
-    rows = ["| | claim of the thesis | here |", "|---|---|---|"]
-    for title, chapter in entries().items():
-        for name, entry in chapter.items():
-            chosen = title.startswith(names) or name in names.split(", ")
-            if chosen and entry["verdict"] != "nothing to test":
-                link = f"[{name}]({entry['page'].removeprefix('results/')})"
-                brief = f": {entry['brief']}" if "brief" in entry else ""
-                rows.append(f"| {link} | {entry['claim']} | {entry['verdict']}{brief} |")
-    return "\n".join(rows) + "\n"
-
-
 def entry_text(name: str, entry: dict[str, Any]) -> str:
     """The part of the page about one figure or table."""
     verdict, shows = entry["verdict"], filled(entry["shows"]).strip()
