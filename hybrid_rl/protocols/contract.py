@@ -27,7 +27,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax.experimental import checkify
 
-from hybrid_rl.errors import PartError, SourceOf
+from hybrid_rl.errors import PartError, SourceOf, UsageError
 from hybrid_rl.types import EnvState, Path
 
 Thing = TypeVar("Thing")
@@ -76,8 +76,10 @@ class Contract:
         values: Mapping[str, Any],
         error: type[PartError] = PartError,
         owner: Any = None,
+        field: str = "",
     ) -> None:
-        self.part, self.protocol, self.error, self.owner = part, protocol, error, owner
+        self.part, self.protocol, self.error = part, protocol, error
+        self.owner, self.field = owner, field  # that holds it
         self.source = SourceOf(part, error)
         self.values, self.sizes, self.given = dict(values), dict(SIZES), dict.fromkeys(values, "")
         spec = values["spec"]
@@ -89,10 +91,14 @@ class Contract:
         if isinstance(self.part, type):
             line = f"{self.part.__module__}: {self.part.__name__} is a class"
             raise self.error(f"{line}; give {self.part.__name__}()")
+        lacks = [name for name in members(self.protocol) if getattr(self.part, name, self) is self]
+        if lacks and self.field and not of_user(self.part):  # of the library: another choice
+            line = f"has no {', '.join(lacks)}, which {type(self.owner).__name__} needs"
+            raise UsageError(f"{self.field}={type(self.part).__name__}: {line}; choose another one")
         for name, member in members(self.protocol).items():
             if inspect.isfunction(member):
                 self.source.takes(name, *[*inspect.signature(member).parameters][1:])
-            elif getattr(self.part, name, self) is self:
+            elif name in lacks:
                 line = f"has no {name}; see protocols.{self.protocol.__name__}"
                 raise self.error(f"{self.source.at()} {line}")
 

@@ -156,7 +156,7 @@ def _contracts(whole: Any, spec: Any) -> Iterator[Contract]:
     for owner, name, protocol, part in reversed([*parts(whole)]):
         protocol = protocol or (ROLES.get(name) if of_user(owner) else None)
         if protocol is not None:
-            yield Contract(part, protocol, {"spec": spec}, owner=owner)
+            yield Contract(part, protocol, {"spec": spec}, owner=owner, field=name)
 
 
 def _start(own: Any, model: Any, params: Params, obs: Any) -> Any:

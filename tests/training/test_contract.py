@@ -201,7 +201,7 @@ def test_a_part_of_the_users_in_one_of_the_library_is_compared_with_its_field(ma
 
 
 def test_what_the_library_says_stays_as_it_is():
-    with pytest.raises(ValueError, match=r"^model\.products=\[7\]: x has entries 0 to 2$"):
+    with pytest.raises(ValueError, match=r"^model\.products=\[7\]: x has entries 0 to 2"):
         check(learner=LeastSquares(Koopman(Observables(), products=(7,))))
 
 
