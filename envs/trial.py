@@ -78,7 +78,7 @@ def _check_spec(world: SourceOf) -> None:
     whole = isinstance(spec, Spec) and all(
         isinstance(size, Integral) and size >= 1 for size in (spec.obs, spec.act)
     )
-    if not whole or not isinstance(spec.dt, Real) or not 0 < spec.dt < np.inf:
+    if not whole or not isinstance(spec.dt, Real) or not 0 < float(spec.dt) < np.inf:
         must = "it must be Spec(obs=..., act=..., dt=...), two whole numbers above 0 and seconds"
         raise WorldError(f"{at}: spec is {spec}; {must}")
 

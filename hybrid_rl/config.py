@@ -178,6 +178,11 @@ def build(config: DictConfig) -> Run:
         UsageError: if a value is out of range.
     """
     check(config)
+    return built(config)
+
+
+def built(config: DictConfig) -> Run:
+    """As `build`, of a configuration that `check` has passed."""
     rounds = -(-config.total_steps // config.num_envs)
     remembered = config.get("begun", {}).get("remembered", 0)  # decisions of each environment
     checks.whole("replay.capacity", config.replay.capacity)

@@ -106,7 +106,9 @@ class Contract:
         """Raise PartError for a method that gives something else; of these names, or all."""
         self.check_members()
         for name, signature in signatures(self.protocol).items():
-            if (not names or name in names) and getattr(self.part, name, None) is not None:
+            takes = terms(signature.split("->")[0])
+            known = all(type(size) is int for _, of in takes for size in self._shape(of or ""))
+            if known and name in (names or {name}) and getattr(self.part, name, None) is not None:
                 self.trace(name, signature)
         return self
 
