@@ -34,9 +34,9 @@ if TYPE_CHECKING:
         statistics,
     )
     from hybrid_rl.envs.analytic.state import fully_observed
-    from hybrid_rl.envs.contract import check
     from hybrid_rl.envs.mujoco.body import Body
     from hybrid_rl.envs.mujoco.physics import Physics
+    from hybrid_rl.envs.trial import check
     from hybrid_rl.errors import DivergenceError, UsageError
     from hybrid_rl.evaluate import evaluate
     from hybrid_rl.fields import part
@@ -97,7 +97,7 @@ _PUBLIC = {  # name -> its module, or MODULE:NAME; train and evaluate can be cal
     "Spec": "types:Spec",
     "UsageError": "errors:UsageError",
     "adjoint": "core.adjoint",
-    "check": "envs.contract:check",
+    "check": "envs.trial:check",
     "compose": "config:load",
     "curves": "analysis.curves:curves",
     "evaluate": "evaluate",

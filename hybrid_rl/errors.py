@@ -100,6 +100,8 @@ class SourceOf:
         except UsageError:
             raise
         except FAULTS as error:
+            if isinstance(error, ValueError) and ours(error) and user_line(error) is None:
+                raise  # it says what to change
             line = user_line(error, self.file)
             if line is None:
                 raise self.error(f"{self.at(method)}: {one_line(error)}") from error

@@ -184,7 +184,7 @@ def _wrong(kind: Any, value: Any) -> str:
         wrong = must.words if must.has else f"must {must.words}"
         return _wrong(of[0], value) if holds else wrong
     if getattr(kind, "_is_protocol", False):
-        return "must be a part" if isinstance(value, NO_PART) else _lacking(kind, value)
+        return "must be a part" if isinstance(value, NO_PART) else ""
     if get_origin(kind) is Literal:
         return "" if value in of else f"choose one of {', '.join(map(str, of))}"
     if get_origin(kind) is not tuple:
@@ -196,18 +196,6 @@ def _wrong(kind: Any, value: Any) -> str:
         return f"must have {len(each)} entries"
     wrong = next(filter(None, map(_wrong_entry, each, value)), "")
     return "must be a list of lists" if wrong == "must be a list" else wrong
-
-
-def _lacking(protocol: Any, value: Any) -> str:
-    """What a part of the library lacks of a protocol, in words; "" if it has all."""
-    if not type(value).__module__.startswith("hybrid_rl."):
-        return ""
-    bases = [base for base in protocol.__mro__ if getattr(base, "_is_protocol", False)]
-    names = {
-        name for base in bases for name in {**vars(base), **vars(base).get("__annotations__", {})}
-    }
-    lacks = sorted(x for x in names if not (x.startswith("_") or hasattr(value, x)))
-    return f"has no {', '.join(lacks)}; choose a part that has" if lacks else ""
 
 
 def _wrong_entry(kind: Any, value: Any) -> str:

@@ -46,14 +46,14 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import forced, raw_values, value_of
 from hybrid_rl.parts import part_class
 from hybrid_rl.protocols import Controller
+from hybrid_rl.protocols.contract import has_users
 from hybrid_rl.settings.complete import LACKING, complete, refusal, select
 from hybrid_rl.trained import Trained, load_named
 from hybrid_rl.training.agent import Agent
-from hybrid_rl.training.contract import check_controllers
+from hybrid_rl.training.contract import check_acting
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import Imagination
 from hybrid_rl.training.loop import compile_lowered
-from hybrid_rl.training.traced import users
 from hybrid_rl.types import Params
 
 PLANNERS = ("planner", "planner_alone")
@@ -171,10 +171,10 @@ def _greedy(
     trained: Trained, episode: Episode, controllers: Mapping[str, Controller]
 ) -> dict[str, Controller]:
     """The controllers without exploration."""
-    if any(users([*controllers.values()])):
+    if has_users([*controllers.values()]):
         agent = Agent(episode, next(iter(controllers.values())), {}, Replay())
         one: Any = jax.tree.map(lambda leaf: leaf[0], trained.params)
-        check_controllers(controllers.values(), agent, one, {})
+        check_acting(agent, controllers.values(), one)
     return {mode: each.greedy() for mode, each in controllers.items()}
 
 

@@ -85,7 +85,7 @@ class OnlineLearner:
         self.config = _config(method, {"obs": obs, "act": act, "dt": dt}, seed, config_dir)
         check(self.config)
         prepare(self.config)
-        run = configuration.build(self.config)
+        run = configuration.built(self.config)
         fits([run])
         self._loop = RobotLoop(run.agent, run.seeds, 1)
         self._mode, self._lock, self._spec = learn, threading.Lock(), run.agent.spec

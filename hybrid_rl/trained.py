@@ -37,8 +37,8 @@ from hybrid_rl.run.logs.progress import say
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.training.acting import TrainedPolicy
 from hybrid_rl.training.agent import Agent, AgentState
+from hybrid_rl.training.contract import needs_world
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.training.traced import needs_world
 from hybrid_rl.types import Params
 
 PARTS, COUNTS = ("env", "episode", "policy"), ("seed", "step")  # of `about`

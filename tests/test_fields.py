@@ -137,7 +137,7 @@ def test_a_run_names_the_shortest_key_of_the_field():
         ("task=two_link algo=kle3_bayesopt", "belief.size=1: must be 2, as of the domain"),
         (
             "algo=sac learner@policy_learner=flash_sac",
-            "policy_learner.policy=TanhGaussian: has no ",
+            "critic=EnsembleQ: has no in_batch, ",
         ),
         ("task=quadcopter env.asset=x", "env.asset=x: no model "),
         ("algo=localisation", "task=pendulum: has no env.acceleration, which localisation"),

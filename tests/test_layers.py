@@ -51,7 +51,7 @@ ALLOWED = {
     "fields": set(),
     "modules": {"errors"},
     "parts": {"errors", "fields", "modules"},  # judges names, and builds what they name
-    "protocols": {"types", "fields", "protocols"},
+    "protocols": {"types", "errors", "fields", "protocols"},
     "core": {"types", "fields", "protocols", "core"},
     "networks": {"types", "fields", "protocols", "core", "networks"},
     "envs": {"types", "fields", "protocols", "errors", "parts", "envs"},

@@ -27,8 +27,8 @@ from jax import Array
 
 from hybrid_rl.envs.adapters.copies import PICTURE, Copies
 from hybrid_rl.envs.adapters.unstepped import Made, import_named, registered
-from hybrid_rl.envs.contract import check
 from hybrid_rl.envs.mujoco import offscreen
+from hybrid_rl.envs.trial import check
 from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame
 from hybrid_rl.fields import Positive, part
 from hybrid_rl.types import EnvState, Spec

@@ -8,10 +8,12 @@ Source: the MJCF reference of MuJoCo, "compiler/angle", "joint/range", "general/
 
 from collections.abc import Iterator, Sequence
 
+import jax
 import mujoco
 import numpy as np
+from jax.extend.core import ClosedJaxpr, Jaxpr
 
-from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.envs.mujoco import mjcf, native
 from hybrid_rl.envs.mujoco.physics import PhysicsState
 
 RANGE = np.deg2rad(2 * np.pi), 4 * np.pi  # [rad] of a hinge: narrowest and widest
@@ -61,3 +63,31 @@ def of_controls(actions: np.ndarray, states: Sequence[PhysicsState]) -> Iterator
         names, i = ", ".join(str(model.actuator(k).name or k) for k in left), left[0]
         given = f"the actions as they are, where {low[i]:.3g} to {high[i]:.3g} is allowed"
         yield f"controls of actuator {names} are {given}; map [-1, 1] to the range"
+
+
+def of_clock(dt: float, step: ClosedJaxpr) -> Iterator[str]:
+    """A line if MuJoCo C simulates another time in a decision than dt [s]; `step`: a program.
+
+    Nothing where that is not certain, as physics steps stand in a loop or a branch.
+    """
+    calls = list(_physics(step.jaxpr))
+    for asset in {asset for asset, _, _ in calls}:
+        counts = [n for name, n, _ in calls if name == asset]
+        h, n = mjcf.load(asset).opt.timestep, sum(counts)
+        sure = all(once for name, _, once in calls if name == asset)
+        if sure and not np.isclose([h * n, *(h * count for count in counts)], dt, rtol=1e-3).any():
+            steps = f"{n} physics steps of {h:g} s, {h * n:g} s in all"
+            yield f"makes {steps}, and spec.dt is {dt:g} s; write dt={h * n:g}, or other steps"
+
+
+def _physics(program: Jaxpr, once: bool = True) -> Iterator[tuple[str, int, bool]]:
+    """Model, physics steps, and whether it is made once, of each call of MuJoCo C in a program."""
+    for each in program.eqns:
+        if each.primitive.name == "ffi_call":
+            called = native.call_of(each.params["target_name"])
+            yield from [(called.asset, called.steps, once)] if called and called.steps else []
+        straight = each.primitive.name in ("jit", "pjit") or each.params.get("branches_platforms")
+        for inner in jax.tree.leaves(list(each.params.values())):
+            if isinstance(inner, ClosedJaxpr | Jaxpr):
+                inside = inner.jaxpr if isinstance(inner, ClosedJaxpr) else inner
+                yield from _physics(inside, once and bool(straight))

@@ -4,9 +4,11 @@ from typing import Protocol
 
 from jax import Array
 
+from hybrid_rl.protocols.contract import gives, may
 from hybrid_rl.types import Params, PyTree, Return, Spec
 
 
+@may(reward_to_go="Params, path -> S [T+1]")
 class Objective(Protocol):
     """J(path): the return that a planner maximises; any function of the path and of the past.
 
@@ -16,9 +18,11 @@ class Objective(Protocol):
     which gradient planners log; its key is that of `prepare`.
     """
 
+    @gives("spec -> memory")
     def init(self, spec: Spec) -> PyTree:
         """Memory before the first decision of an episode."""
 
+    @gives("Params, memory, x, u [m], key -> J [], memory")
     def prepare(
         self, params: Params, memory: PyTree, x: Array, u_before: Array, key: Array
     ) -> tuple[Return, PyTree]:
@@ -38,6 +42,7 @@ class Target(Protocol):
     whether all of it lies outside the box [low, high], [v], is refused for such a domain.
     """
 
+    @gives("Params, s [v] -> log_density []")
     def log_density(self, params: Params, s: Array) -> Array:
         """log p(s) [] at s [v], up to a constant."""
 
@@ -45,6 +50,7 @@ class Target(Protocol):
 class Proposal(Protocol):
     """The distribution from which a sampling planner draws its candidates."""
 
+    @gives("spec, quantile [] -> carry")
     def init(self, spec: Spec, quantile: Array) -> PyTree:
         """Carry of one imagined path before its first action; `quantile` [] in [0, 1) is k / K."""
 
@@ -68,9 +74,11 @@ class Controller(Protocol):
     three results are those of `act`; the fourth is Considered.
     """
 
+    @gives("spec -> state")
     def init(self, spec: Spec) -> PyTree:
         """State at the start of an episode."""
 
+    @gives("Params, state, obs [o], key -> action [m], state, metrics")
     def act(
         self, params: Params, state: PyTree, obs: Array, key: Array
     ) -> tuple[Array, PyTree, dict[str, Array]]:

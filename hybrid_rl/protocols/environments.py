@@ -5,6 +5,7 @@ from typing import Annotated, Protocol
 from jax import Array
 
 from hybrid_rl.fields import has
+from hybrid_rl.protocols.contract import gives
 from hybrid_rl.types import EnvState, Spec
 
 
@@ -15,9 +16,11 @@ class Env(Protocol):
     def spec(self) -> Spec:
         """Its sizes, and the time between decisions."""
 
+    @gives("key -> env")
     def reset(self, key: Array) -> EnvState:
         """The first state of an episode."""
 
+    @gives("env, action [m] -> env")
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state one decision later. action: [m] in [-1, 1]."""
 
@@ -25,6 +28,7 @@ class Env(Protocol):
 class BalancedEnv(Env, Protocol):
     """An environment that stays at its equilibrium under a constant action."""
 
+    @gives("-> obs [o], action [m]")
     def equilibrium(self) -> tuple[Array, Array]:
         """The observation [o] and the action [m] at rest."""
 
@@ -36,6 +40,7 @@ class Goal(Protocol):
     some take gradients.
     """
 
+    @gives("x [o], u [m], after [o] -> reward []")
     def reward_of(self, x: Array, u: Array, after: Array) -> Array:
         """The reward [] of action u [m] at the observation x [o], which led to `after` [o]."""
 
@@ -55,6 +60,7 @@ class Constraint(Protocol):
     def width(self) -> float:
         """The width of the smooth indicator sigmoid(excess / width), in the unit of `excess`."""
 
+    @gives("x [o], u [m], after [o] -> excess []")
     def excess(self, x: Array, u: Array, after: Array) -> Array:
         """How far [] action u [m] at x [n], which led to `after` [n], is beyond the limit.
 

@@ -4,6 +4,7 @@ from typing import Protocol
 
 from jax import Array
 
+from hybrid_rl.protocols.contract import gives
 from hybrid_rl.protocols.environments import AnalyticEnv
 from hybrid_rl.types import Params, PyTree, Room, Spec, Step
 
@@ -11,9 +12,11 @@ from hybrid_rl.types import Params, PyTree, Room, Spec, Step
 class Features(Protocol):
     """z(o): the functions of an observation in which a model is linear."""
 
+    @gives("key, spec -> params")
     def init(self, key: Array, spec: Spec) -> PyTree:
         """Initial parameters, with "weights" as an entry if they are learned."""
 
+    @gives("params, obs [o] -> z [z]")
     def __call__(self, params: PyTree, obs: Array) -> Array:
         """z [n] of an observation [o]."""
 
@@ -21,15 +24,18 @@ class Features(Protocol):
 class Model(Protocol):
     """x' = f(x, u)."""
 
+    @gives("key, spec -> params")
     def init(self, key: Array, spec: Spec) -> PyTree:
         """Initial parameters."""
 
+    @gives("params, obs [o] -> x [x]")
     def lift(self, params: PyTree, obs: Array) -> Array:
         """The planning state x [n] of an observation [o].
 
         Parts that read observations in planning states need x[:o] to be the observation.
         """
 
+    @gives("params, x, u [m] -> x")
     def step(self, params: PyTree, x: Array, u: Array) -> Array:
         """Mean of the next planning state [n]."""
 
@@ -76,15 +82,19 @@ class LinearModel(Uncertain, Protocol):
 class Policy(Protocol):
     """u = pi(x), stochastic."""
 
+    @gives("key, spec -> params")
     def init(self, key: Array, spec: Spec) -> PyTree:
         """Initial parameters, for planning states of size spec.n."""
 
+    @gives("params, x [n] -> action [m]")
     def mean(self, params: PyTree, x: Array) -> Array:
         """The action [m] without noise."""
 
+    @gives("params, x [n], noise [m] -> action [m], log_prob []")
     def sample(self, params: PyTree, x: Array, noise: Array) -> tuple[Array, Array]:
         """The action [m] for noise [m] ~ N(0, I), and its log-density []."""
 
+    @gives("params, x [n] -> variance [m]")
     def variance(self, params: PyTree, x: Array) -> Array:
         """Variance [m] of the action."""
 
@@ -124,6 +134,7 @@ class StabilizingPolicy(Policy, Protocol):
 class Critic(Protocol):
     """Q(x, u), an ensemble."""
 
+    @gives("key, spec -> params")
     def init(self, key: Array, spec: Spec) -> PyTree:
         """Initial parameters, for planning states of size spec.n."""
 
@@ -133,6 +144,7 @@ class Critic(Protocol):
     def all(self, params: PyTree, x: Array, u: Array) -> Array:
         """Q [members, ...] at x [..., n] and u [..., m]."""
 
+    @gives("params, x [n], u [m] -> Q []")
     def value(self, params: PyTree, x: Array, u: Array) -> Array:
         """Q [...], reduced over the members."""
 
@@ -140,6 +152,7 @@ class Critic(Protocol):
 class Reward(Protocol):
     """r(x, u, x'), learned or known."""
 
+    @gives("Params, x [n], u [m], after [n] -> reward [], logit []")
     def outcome(self, params: Params, x: Array, u: Array, after: Array) -> tuple[Array, Array]:
         """The reward [] of u [m] at x [n], and the logit [] of the episode ending there.
 
@@ -150,6 +163,7 @@ class Reward(Protocol):
 class Belief(Protocol):
     """A distribution over an unknown function, updated recursively by measurements y at s."""
 
+    @gives("key, spec -> state")
     def init(self, key: Array, spec: Spec) -> PyTree:
         """The belief before any measurement."""
 

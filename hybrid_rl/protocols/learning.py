@@ -4,6 +4,7 @@ from typing import Literal, Protocol
 
 from jax import Array
 
+from hybrid_rl.protocols.contract import gives
 from hybrid_rl.types import Batch, Params, PyTree, Spec, Transition
 
 
@@ -26,12 +27,15 @@ class _Learner(Protocol):
 
     owns: tuple[str, ...]  # fields of `Params` that it learns; that of "model" has a field `model`
 
+    @gives("key, spec -> state")
     def init(self, key: Array, spec: Spec) -> PyTree:
         """Initial state: parameters, optimisers, targets."""
 
+    @gives("state -> owned")
     def params(self, state: PyTree) -> dict[str, PyTree]:
         """The fields of `Params` that this learner owns."""
 
+    @gives("state, Params, batch, key -> state, metrics")
     def update(
         self, state: PyTree, params: Params, batch: Batch, key: Array
     ) -> tuple[PyTree, dict[str, Array]]:

@@ -128,7 +128,7 @@ def _resume(
             with folder.blame_config(run_dir):
                 check(own)
                 prepare(own)
-                runs.append(configuration.build(own))
+                runs.append(configuration.built(own))
             refuse_edits(own, run_dir)
             members.append(Member(own, values[run_dir]))
         axis = together.axis_of(members, runs)

@@ -61,9 +61,9 @@ def concatenated(states: Sequence[Any]) -> Any:
 
 
 def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:
-    """The new run of `config`, and what it begins with."""
+    """The new run of a checked configuration, and what it begins with; errors as `begun`."""
     if config.get("run") is None:
-        return configuration.build(config), None
+        return configuration.built(config), None
     with folder.blame_config(Path(str(config.run)), lacking=True):
         return begun(config)
 
@@ -84,7 +84,7 @@ def begun(config: DictConfig) -> tuple[Run, Start]:
     if config.pretrain:
         raise UsageError(f"pretrain={config.pretrain}: what run={source} has learned is kept")
     numbers = _numbers(config, then, source)
-    run = configuration.build(config)
+    run = configuration.built(config)
     step, learners, notes = _learners(run, config, then, source)
     memory, why = _memory(run.agent, config, then, step, source)
     demonstrated, remembered = run.agent.replay.num_demonstrated(run.agent.num_envs), 0
@@ -96,7 +96,7 @@ def begun(config: DictConfig) -> tuple[Run, Start]:
     with open_dict(config):
         config.begun = {"step": step, "remembered": remembered, "memory": words}
     if memory is not None:
-        run = configuration.build(config)  # with room for what it remembers
+        run = configuration.built(config)  # with room for what it remembers
         memory = _rewritten(run.agent, memory, why == RELABELLED)
     if why:  # they imagined other rewards, or another world
         learners = forgotten(learners)

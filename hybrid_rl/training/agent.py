@@ -16,12 +16,11 @@ from hybrid_rl.data.replay import Memory, Replay, as_batch
 from hybrid_rl.fields import LARGEST, Count, FieldError, Natural, check
 from hybrid_rl.protocols import Controller, Learner, Model
 from hybrid_rl.training import contract
+from hybrid_rl.training.contract import needs_world
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.keys import Keys
 from hybrid_rl.training.metrics import masked_mean, outcome
-from hybrid_rl.training.owners import check_fit
 from hybrid_rl.training.rollout import act
-from hybrid_rl.training.traced import needs_world
 from hybrid_rl.types import Batch, EnvState, Params, Spec, Transition
 
 
@@ -95,7 +94,6 @@ class Agent:
         for part in self.learners.values():
             if (check := getattr(part, "check", None)) is not None:
                 check(longest)
-        check_fit([self.controller, *controllers, *self.learners.values()], self)
         jax.eval_shape(lambda: self.controller.init(self.spec))
         if not self.learners and needs_world(self.controller):  # not every planner can
             jax.eval_shape(lambda: self.step(self.init(jax.random.key(0)), jnp.int32(0)))

@@ -23,7 +23,7 @@ from hybrid_rl.envs.mujoco.randomised import Ranges
 from hybrid_rl.errors import UsageError
 from hybrid_rl.fields import Count, FieldError, Natural, NotNegative, check
 from hybrid_rl.protocols import Constraint, Env, Goal
-from hybrid_rl.training import user_functions
+from hybrid_rl.protocols.contract import Contract
 from hybrid_rl.training.wrappers import put_around
 from hybrid_rl.types import EnvState, Spec
 
@@ -65,8 +65,9 @@ class Episode:
                 check(self, name, kind)
         except FieldError as error:
             raise error.at("episode") from error
-        for name in user_functions.METHODS:
-            user_functions.check(name, getattr(self, name), self.env.spec)
+        for part, protocol in ((self.reward, Goal), (self.constraint, Constraint)):
+            if part is not None:
+                Contract(part, protocol, {"spec": self.env.spec}).check().tried()
         object.__setattr__(self, "randomise", self._ranges(self.randomise))
         if isinstance(self.sensor_noise, list):  # so that episodes can be hashed
             object.__setattr__(self, "sensor_noise", self.std)

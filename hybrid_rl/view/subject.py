@@ -17,8 +17,8 @@ from hybrid_rl.fields import Must, choices, plain
 from hybrid_rl.goals import apply_changes
 from hybrid_rl.protocols import Controller
 from hybrid_rl.trained import Trained
+from hybrid_rl.training.contract import needs_world
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.training.traced import needs_world
 from hybrid_rl.types import Params
 
 DISTURBED = {"delay": 5.0, "sensor_noise": 0.5, "action_noise": 0.5}  # of an episode -> the most

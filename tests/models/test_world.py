@@ -21,8 +21,8 @@ from hybrid_rl.models.world import World
 from hybrid_rl.objectives.predicted_return import PredictedReturn
 from hybrid_rl.rewards.world import WorldReward
 from hybrid_rl.trained import Trained
+from hybrid_rl.training.contract import needs_world
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.training.traced import needs_world
 from hybrid_rl.types import EnvState, Params, Path, Spec
 
 T, K, LAMBDA, GAMMA = 4, 3, 0.5, 0.9
