@@ -138,6 +138,9 @@ def __dir__() -> list[str]:
 # matrices are factorised at once, and its threads wait for one another: up to 30 times slower.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-# In a checkout `envs/` stands beside this package; in a wheel it is inside it.
-if not os.path.isdir(os.path.join(os.path.dirname(__file__), "envs")):
-    __path__ = [*__path__, os.path.dirname(os.path.dirname(__file__))]
+# `python -m hybrid_rl.view` is tools/view. In a checkout `envs/` stands beside this package; in a
+# wheel it is inside it.
+_HERE = os.path.dirname(__file__)
+__path__ = [*__path__, os.path.join(_HERE, "tools")]
+if not os.path.isdir(os.path.join(_HERE, "envs")):
+    __path__ = [*__path__, os.path.dirname(_HERE)]
