@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from hybrid_rl import fields, protocols, types
     from hybrid_rl.analysis.curves import curves
     from hybrid_rl.analysis.dataframes import metrics
+    from hybrid_rl.cli import arguments, command
     from hybrid_rl.config import load as compose
     from hybrid_rl.core import (
         adjoint,
@@ -37,13 +38,14 @@ if TYPE_CHECKING:
     from hybrid_rl.envs.contract import check
     from hybrid_rl.envs.mujoco.body import Body
     from hybrid_rl.envs.mujoco.physics import Physics
-    from hybrid_rl.errors import DivergenceError, UsageError
+    from hybrid_rl.errors import CheckpointError, DivergenceError, UsageError
     from hybrid_rl.evaluate import evaluate
     from hybrid_rl.fields import part
     from hybrid_rl.goals import retargeted
     from hybrid_rl.named import load, make
     from hybrid_rl.online import OnlineLearner
     from hybrid_rl.train import train
+    from hybrid_rl.trained import Trained
     from hybrid_rl.training.agent import Agent
     from hybrid_rl.training.episode import Episode
     from hybrid_rl.training.loop import Loop
@@ -54,6 +56,7 @@ __version__ = "0.3.0.dev0"
 __all__ = [
     "Agent",
     "Body",
+    "CheckpointError",
     "DivergenceError",
     "EnvState",
     "Episode",
@@ -61,9 +64,12 @@ __all__ = [
     "OnlineLearner",
     "Physics",
     "Spec",
+    "Trained",
     "UsageError",
     "adjoint",
+    "arguments",
     "check",
+    "command",
     "compose",
     "curves",
     "evaluate",
@@ -88,6 +94,7 @@ __all__ = [
 _PUBLIC = {  # name -> its module, or MODULE:NAME; train and evaluate can be called
     "Agent": "training.agent:Agent",
     "Body": "envs.mujoco.body:Body",
+    "CheckpointError": "errors:CheckpointError",
     "DivergenceError": "errors:DivergenceError",
     "EnvState": "types:EnvState",
     "Episode": "training.episode:Episode",
@@ -95,9 +102,12 @@ _PUBLIC = {  # name -> its module, or MODULE:NAME; train and evaluate can be cal
     "OnlineLearner": "online:OnlineLearner",
     "Physics": "envs.mujoco.physics:Physics",
     "Spec": "types:Spec",
+    "Trained": "trained:Trained",
     "UsageError": "errors:UsageError",
     "adjoint": "core.adjoint",
+    "arguments": "cli.arguments",
     "check": "envs.contract:check",
+    "command": "cli.command",
     "compose": "config:load",
     "curves": "analysis.curves:curves",
     "evaluate": "evaluate",

@@ -51,7 +51,7 @@ FOLLOWED = {  # what is imported by a name that is no constant: judged, typed, o
     "envs/adapters/external.py": {"registered(self.id)"},
     "hybrid_rl/tools/stand_in/__init__.py": {"kind.id"},
     "envs/mujoco/offscreen.py": {"f'mujoco.{name}'"},
-    "hybrid_rl/__init__.py": {"f'hybrid_rl.{_MODULES[name]}'", "f'hybrid_rl.{module}'"},
+    "hybrid_rl/__init__.py": {"f'hybrid_rl.{module}'"},
     "hybrid_rl/figures.py": {"home", "module", "name"},
     "hybrid_rl/run/logs/loggers.py": {"name"},
 }

@@ -10,9 +10,9 @@ without a display, too, as over ssh; window=false writes the file.
 """
 
 if __name__ == "__main__":
-    from hybrid_rl.cli import interrupt
+    from hybrid_rl import command
 
-    interrupt.install()
+    command.install()
 
 import os
 import platform
@@ -22,16 +22,19 @@ from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
 
-from hybrid_rl import __version__
-from hybrid_rl.cli import command
-from hybrid_rl.cli.arguments import Argument, one_of, output, read
-from hybrid_rl.errors import UsageError, install
+from hybrid_rl import UsageError, __version__, arguments, command
+from hybrid_rl.errors import install
 from hybrid_rl.tools.view import __main__ as view
 
 ARGUMENTS = (
-    Argument("policy", "halfcheetah", "a trained policy, NAME of policies/ or a file"),
-    Argument("out", "", "the video; empty: NAME.mp4"),
-    Argument("window", "auto", "true, false, or auto: see above", one_of("auto", "true", "false")),
+    arguments.Argument("policy", "halfcheetah", "a trained policy, NAME of policies/ or a file"),
+    arguments.Argument("out", "", "the video; empty: NAME.mp4"),
+    arguments.Argument(
+        "window",
+        "auto",
+        "true, false, or auto: see above",
+        arguments.one_of("auto", "true", "false"),
+    ),
 )
 EXTRAS = {"view": "viser", "onnx": "onnx", "warp": "warp", "wandb": "wandb", "slurm": "submitit"}
 SHOWN = 200  # decisions of the video
@@ -83,7 +86,7 @@ def film(policy: str, out: Path) -> str:
     from hybrid_rl.render import draw_film, episode
     from hybrid_rl.trained import read as read_policy
 
-    output("out", out, SUFFIXES)
+    arguments.output("out", out, SUFFIXES)
     trained = read_policy(policy)
     shown = episode(trained, steps=min(SHOWN, trained.episode.steps))
     line = f"{trained.task}: {len(shown.poses) - 1} decisions, return {shown.total:,.1f}"
@@ -97,7 +100,7 @@ def film(policy: str, out: Path) -> str:
 
 def main() -> None:
     """The command."""
-    given, _ = read(__doc__, ARGUMENTS)
+    given, _ = arguments.read(__doc__, ARGUMENTS)
     policy = given["policy"]
     out = Path(given["out"] or f"{Path(policy).stem}.mp4")
     window = windowed(given["window"])

@@ -19,18 +19,15 @@ hybrid_rl.benchmark.race. The numbers are printed, written as JSON and drawn, a 
 """
 
 if __name__ == "__main__":
-    from hybrid_rl.cli import interrupt
+    from hybrid_rl import command
 
-    interrupt.install()
+    command.install()
 
 import json
 from time import perf_counter
 from typing import Any
 
-from hybrid_rl import conf_files, config
-from hybrid_rl.cli import command
-from hybrid_rl.cli.arguments import Argument, number, output, read, several, whole
-from hybrid_rl.errors import UsageError
+from hybrid_rl import UsageError, arguments, command, conf_files, config
 from hybrid_rl.networks.precision import PRECISIONS
 from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.machine.jax_settings import prepare
@@ -56,23 +53,37 @@ SIZES = {  # of all parts, on a CPU and elsewhere
     },
 }
 ARGUMENTS = (
-    Argument("parts", ["physics", "plan", "shares", "loop"], "what to measure", several(*PARTS)),
-    Argument("tasks", "", f"of part physics; empty: {TASKS}"),
-    Argument("experiment", None, f"of other parts, may be empty; else {EXPERIMENT}, of loop none"),
-    Argument("algo", "hybrid_stochastic", "of all parts but physics"),
-    Argument("physics", None, "native,mjx,warp; else native, and mjx on a GPU, except of loop"),
-    Argument("worlds", None, "numbers of them, of part physics"),
-    Argument("learners", None, f"numbers of them, of parts {', '.join(LEARNERS)}"),
-    Argument("plans", None, "KxT, such as 20x10,64x20, of part plan"),
-    Argument(
-        "settings", [], f"of parts shares and loop, of {', '.join(SETTINGS)}", several(*SETTINGS)
+    arguments.Argument(
+        "parts", ["physics", "plan", "shares", "loop"], "what to measure", arguments.several(*PARTS)
     ),
-    Argument(
-        "precision", [], "of networks; of part loop several, or the method's", several(*PRECISIONS)
+    arguments.Argument("tasks", "", f"of part physics; empty: {TASKS}"),
+    arguments.Argument(
+        "experiment", None, f"of other parts, may be empty; else {EXPERIMENT}, of loop none"
     ),
-    Argument("seconds", 3.0, "of a row of parts shares and loop, in each round", number(0.0)),
-    Argument("rounds", 5, "of which medians are taken", whole()),
-    Argument("out", "benchmark.json", "the numbers; a picture in the same folder"),
+    arguments.Argument("algo", "hybrid_stochastic", "of all parts but physics"),
+    arguments.Argument(
+        "physics", None, "native,mjx,warp; else native, and mjx on a GPU, except of loop"
+    ),
+    arguments.Argument("worlds", None, "numbers of them, of part physics"),
+    arguments.Argument("learners", None, f"numbers of them, of parts {', '.join(LEARNERS)}"),
+    arguments.Argument("plans", None, "KxT, such as 20x10,64x20, of part plan"),
+    arguments.Argument(
+        "settings",
+        [],
+        f"of parts shares and loop, of {', '.join(SETTINGS)}",
+        arguments.several(*SETTINGS),
+    ),
+    arguments.Argument(
+        "precision",
+        [],
+        "of networks; of part loop several, or the method's",
+        arguments.several(*PRECISIONS),
+    ),
+    arguments.Argument(
+        "seconds", 3.0, "of a row of parts shares and loop, in each round", arguments.number(0.0)
+    ),
+    arguments.Argument("rounds", 5, "of which medians are taken", arguments.whole()),
+    arguments.Argument("out", "benchmark.json", "the numbers; a picture in the same folder"),
 )
 GROUPS = {name: f"a key of the method's {name}" for name in PLANNED}
 
@@ -85,8 +96,8 @@ def _check(settings: dict[str, Any]) -> None:
             value = ",".join(value) if isinstance(value, list) else value
             line = f"{name}={value}: parts={','.join(settings['parts'])} does not use it"
             raise UsageError(f"{line}; {', '.join(parts)} would")
-    several(*conf_files.options("task"))("tasks", settings["tasks"] or TASKS)
-    several(*conf_files.options("algo"))("algo", settings["algo"])
+    arguments.several(*conf_files.options("task"))("tasks", settings["tasks"] or TASKS)
+    arguments.several(*conf_files.options("algo"))("algo", settings["algo"])
 
 
 def main() -> None:
@@ -96,9 +107,9 @@ def main() -> None:
     from hybrid_rl.run.machine import provenance
     from hybrid_rl.tools.benchmark.picture import draw
 
-    given, changes = read(__doc__, ARGUMENTS, GROUPS)
+    given, changes = arguments.read(__doc__, ARGUMENTS, GROUPS)
     settings: dict[str, Any] = {**given, **changes}
-    out, rounds = output("out", settings["out"], (".json",), ".png"), settings["rounds"]
+    out, rounds = arguments.output("out", settings["out"], (".json",), ".png"), settings["rounds"]
     _check(settings)
     threads = ["physics=mjx"] if "mjx" in (settings["physics"] or "") else []
     precision = next(iter(settings["precision"]), "auto")

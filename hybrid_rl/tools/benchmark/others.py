@@ -18,11 +18,10 @@ import mujoco
 import numpy as np
 import optax
 
+from hybrid_rl import Episode, Physics
 from hybrid_rl.envs.mujoco import native
-from hybrid_rl.envs.mujoco.physics import Physics
 from hybrid_rl.tools.benchmark.ours import beginning, compile_contestant, recalled, world
 from hybrid_rl.tools.benchmark.race import Contestant
-from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Batch, Spec
 
 

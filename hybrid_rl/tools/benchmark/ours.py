@@ -12,14 +12,11 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl import config
+from hybrid_rl import Agent, Episode, Loop, config
 from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.tools.benchmark.products import alone as products_alone
 from hybrid_rl.tools.benchmark.products import operations, products
 from hybrid_rl.tools.benchmark.race import Contestant
-from hybrid_rl.training.agent import Agent
-from hybrid_rl.training.episode import Episode
-from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Batch, EnvState, Params
 
 TRIED = 5  # decisions that say how long one takes

@@ -14,14 +14,11 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from hybrid_rl import config
+from hybrid_rl import Agent, UsageError, arguments, config
 from hybrid_rl.analysis.curves import plural
-from hybrid_rl.cli.arguments import whole
-from hybrid_rl.errors import UsageError
 from hybrid_rl.networks import precision
 from hybrid_rl.run.machine.jax_settings import CACHE
 from hybrid_rl.tools.benchmark.race import Contestant, race
-from hybrid_rl.training.agent import Agent
 
 TASKS = "halfcheetah,hopper,cartpole"
 REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "results" / "loop_speed.json"
@@ -62,7 +59,7 @@ def plan(settings: Settings, rounds: int) -> Iterator[Table]:
     agent, world = _agent(settings), _agent(settings, settings["physics"].split(",")[-1]).episode
     controller: Any = agent.controller  # with fields of a planner by samples, if it is one
     for text in settings["plans"].split(","):
-        samples, horizon = (whole()("plans", part) for part in text.split("x"))
+        samples, horizon = (arguments.whole()("plans", part) for part in text.split("x"))
         most = 2**20 // samples  # a large plan is for few learners
         try:
             planner = replace(controller, horizon=horizon, samples=samples)
@@ -201,7 +198,7 @@ def _config(settings: Settings, physics: str, size: str) -> Any:
 
 
 def _counts(settings: Settings, key: str) -> list[int]:
-    return [whole()(key, text) for text in settings[key].split(",")]
+    return [arguments.whole()(key, text) for text in settings[key].split(",")]
 
 
 def _race(part: str, what: str, unit: str, field: list[Contestant], rounds: int) -> Table:

@@ -11,20 +11,18 @@ what they found.
 """
 
 if __name__ == "__main__":
-    from hybrid_rl.cli import interrupt
+    from hybrid_rl import command
 
-    interrupt.install()
+    command.install()
 
 from collections.abc import Callable
 from pathlib import Path
 
-from hybrid_rl.cli import command
-from hybrid_rl.cli.arguments import Argument
-from hybrid_rl.cli.arguments import read as arguments
+from hybrid_rl import arguments, command
 from hybrid_rl.tools.doctor import learned, linear, observed, regular, task
 from hybrid_rl.tools.doctor.evidence import Evidence, of_each, read
 
-ARGUMENTS = (Argument("run", "", "folder of the run", needed="run=DIR, a run folder"),)
+ARGUMENTS = (arguments.Argument("run", "", "folder of the run", needed="run=DIR, a run folder"),)
 NOTHING = """{folder}: no fault found.
 The doctor does not know what you want, nor how hard it is. What to look at next:
   python -m hybrid_rl.render run={folder}
@@ -69,7 +67,7 @@ def examine(folder: Path | str) -> dict[str, str]:
 
 def main() -> None:
     """The command."""
-    folder = Path(arguments(__doc__, ARGUMENTS)[0]["run"])
+    folder = Path(arguments.read(__doc__, ARGUMENTS)[0]["run"])
     found = examine(folder)
     width = max(map(len, found), default=0)
     for name, line in found.items():

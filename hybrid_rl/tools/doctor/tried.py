@@ -6,8 +6,8 @@ from typing import Any
 import jax
 import numpy as np
 
+from hybrid_rl import Episode
 from hybrid_rl.envs.adapters.unstepped import Unstepped
-from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import EnvState, Params, Transition
 

@@ -12,9 +12,9 @@ the end of its runs, a line for docs/results/community.md (hybrid_rl.tools.repor
 """
 
 if __name__ == "__main__":
-    from hybrid_rl.cli import interrupt
+    from hybrid_rl import command
 
-    interrupt.install()
+    command.install()
 
 import base64
 import html
@@ -28,12 +28,9 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl import __version__
+from hybrid_rl import UsageError, __version__, arguments, command
 from hybrid_rl.analysis.curves import Curve, area, plural, spread
 from hybrid_rl.analysis.results import RunFolder, differences, find
-from hybrid_rl.cli import command
-from hybrid_rl.cli.arguments import Argument, one_of, output, read
-from hybrid_rl.errors import UsageError
 from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.files.reading import json_file
 from hybrid_rl.run.files.reading import text as text_of
@@ -43,9 +40,13 @@ from hybrid_rl.tools.report.entry import entry
 from hybrid_rl.tools.report.html_table import table
 
 ARGUMENTS = (
-    Argument("run", "", 'run folders, with commas, or "GLOB"', needed="run=DIR, a run folder"),
-    Argument("out", "", "page or .json; empty: DIR/report.html, of several runs report.html"),
-    Argument("video", "auto", "auto: as above; none", one_of("auto", "none")),
+    arguments.Argument(
+        "run", "", 'run folders, with commas, or "GLOB"', needed="run=DIR, a run folder"
+    ),
+    arguments.Argument(
+        "out", "", "page or .json; empty: DIR/report.html, of several runs report.html"
+    ),
+    arguments.Argument("video", "auto", "auto: as above; none", arguments.one_of("auto", "none")),
 )
 MACHINE = ("device", "physics", "precision", "git_commit")  # keys of summary.json
 COMMIT = 10  # characters of its name
@@ -147,9 +148,8 @@ def _videos(runs: Sequence[RunFolder], wanted: bool) -> str:
 
 def _drawn(folder: Path) -> dict[str, bytes]:
     """The beginning of the first evaluation episode of a run, with its caption."""
-    from hybrid_rl import render
+    from hybrid_rl import load, render
     from hybrid_rl.envs.mujoco import offscreen, scenery
-    from hybrid_rl.trained import load
 
     offscreen.backend()
     trained = load(folder)
@@ -267,10 +267,10 @@ def _folders(given: str) -> list[RunFolder]:
 
 def main() -> None:
     """The command."""
-    given, _ = read(__doc__, ARGUMENTS)
+    given, _ = arguments.read(__doc__, ARGUMENTS)
     runs = _folders(given["run"])
     default = f"{runs[0].path}/report.html" if len(runs) == 1 else "report.html"
-    out = output("out", given["out"] or default, (".html", ".json"))
+    out = arguments.output("out", given["out"] or default, (".html", ".json"))
     if out.suffix == ".json":
         write_text(out, entry(runs))
         print(f"{out}: now the link, and in the name what is no default, by hand; then make pages")

@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.analysis.curves import Curve, curves
+from hybrid_rl import UsageError, curves
+from hybrid_rl.analysis.curves import Curve
 from hybrid_rl.analysis.results import RunFolder
-from hybrid_rl.errors import UsageError
 
 RETURN = "eval/return"
 KEYS = ("name", "link", "machine", "rows")

@@ -12,11 +12,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hybrid_rl.analysis.curves import Curve, curves
+from hybrid_rl import UsageError, curves
+from hybrid_rl.analysis.curves import Curve
 from hybrid_rl.analysis.curves_picture import plot
 from hybrid_rl.analysis.results import NOT_METRICS, RunFolder
 from hybrid_rl.analysis.style import COLOURS, STYLE
-from hybrid_rl.errors import UsageError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -12,25 +12,27 @@ import signal
 from contextlib import suppress
 from typing import Any
 
-from hybrid_rl.cli import command
-from hybrid_rl.cli.arguments import Argument, number, one_of, read, whole
-from hybrid_rl.errors import UsageError
+from hybrid_rl import UsageError, arguments, command
 from hybrid_rl.tools.stand_in import KINDS, Physics
 
 ARGUMENTS = (
-    Argument("robot", "halfcheetah", " or ".join(KINDS), one_of(*KINDS)),
-    Argument("port", 7000, "on this machine", whole()),
-    Argument("latency_s", 0.0, "[s] of a datagram in each direction", number(0.0)),
-    Argument("jitter_s", 0.0, "[s] more, on average", number(0.0)),
-    Argument("lost", 0.0, "share of the datagrams that are lost", number(0.0)),
-    Argument("faulty", 0.0, "share that is lost, late, doubled or cut", number(0.0)),
-    Argument("seconds", math.inf, "until it ends", number(0.0)),
+    arguments.Argument("robot", "halfcheetah", " or ".join(KINDS), arguments.one_of(*KINDS)),
+    arguments.Argument("port", 7000, "on this machine", arguments.whole()),
+    arguments.Argument(
+        "latency_s", 0.0, "[s] of a datagram in each direction", arguments.number(0.0)
+    ),
+    arguments.Argument("jitter_s", 0.0, "[s] more, on average", arguments.number(0.0)),
+    arguments.Argument("lost", 0.0, "share of the datagrams that are lost", arguments.number(0.0)),
+    arguments.Argument(
+        "faulty", 0.0, "share that is lost, late, doubled or cut", arguments.number(0.0)
+    ),
+    arguments.Argument("seconds", math.inf, "until it ends", arguments.number(0.0)),
 )
 
 
 def main() -> None:
     """The command."""
-    given: Any = read(__doc__, ARGUMENTS)[0]
+    given: Any = arguments.read(__doc__, ARGUMENTS)[0]
     names = ("port", "latency_s", "jitter_s", "lost", "faulty")
     try:
         physics = Physics(KINDS[given["robot"]], *(given[name] for name in names))

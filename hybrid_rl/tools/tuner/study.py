@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from hydra.core.override_parser.types import Override
 
+from hybrid_rl import UsageError, part
 from hybrid_rl.cli.combinations import listed
 from hybrid_rl.drafts import refuse_link
-from hybrid_rl.errors import UsageError
-from hybrid_rl.fields import Count, Natural, part
+from hybrid_rl.fields import Count, Natural
 from hybrid_rl.run.logs.records import Row
 from hybrid_rl.run.session import RETURNS
 

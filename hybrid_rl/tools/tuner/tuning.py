@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
+from hybrid_rl import UsageError
 from hybrid_rl.analysis.style import BLUE, GREY, STYLE, VERMILION, blank, legend_outside, plain_log
-from hybrid_rl.errors import UsageError
 from hybrid_rl.run.files.reading import json_file
 
 if TYPE_CHECKING:

@@ -18,9 +18,9 @@ acts. reward, constraint, planner, imagine, env.KEY and episode.KEY are as with 
 """
 
 if __name__ == "__main__":
-    from hybrid_rl.cli import interrupt
+    from hybrid_rl import command
 
-    interrupt.install()
+    command.install()
 
 import contextlib
 import errno
@@ -32,22 +32,21 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from hybrid_rl.cli import command
-from hybrid_rl.cli.arguments import ROBOT, ROBOT_CHANGES, Argument, read, robot, whole
-from hybrid_rl.errors import UsageError, install
+from hybrid_rl import UsageError, arguments, command
+from hybrid_rl.errors import install
 
 
 def port(name: str, given: str) -> int:
     """A number of a TCP port."""
-    if (number := whole()(name, given)) > 65535:
+    if (number := arguments.whole()(name, given)) > 65535:
         raise UsageError(f"{name}={given}: must be a whole number, 1 to 65535")
     return number
 
 
 ARGUMENTS = (
-    *ROBOT,
-    Argument("port", 8080, "of the link, or the next one that is free", port),
-    Argument("host", "127.0.0.1", "who may see it: this machine; 0.0.0.0: everybody"),
+    *arguments.ROBOT,
+    arguments.Argument("port", 8080, "of the link, or the next one that is free", port),
+    arguments.Argument("host", "127.0.0.1", "who may see it: this machine; 0.0.0.0: everybody"),
 )
 
 
@@ -151,8 +150,8 @@ def show(
 
 def main() -> None:
     """The command."""
-    given, changes = read(__doc__, ARGUMENTS, ROBOT_CHANGES)
-    robot(given, changes)
+    given, changes = arguments.read(__doc__, ARGUMENTS, arguments.ROBOT_CHANGES)
+    arguments.robot(given, changes)
     check_address(given["host"], given["port"])
     import_viser()
     show(given, changes)

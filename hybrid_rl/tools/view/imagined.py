@@ -16,10 +16,9 @@ import mujoco
 import numpy as np
 from jax import Array
 
-from hybrid_rl.core import lifting
+from hybrid_rl import Episode, lifting
 from hybrid_rl.envs.mujoco.scenery import pose_of, simulated
 from hybrid_rl.protocols import Controller
-from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import EnvState, Params, Path
 
 MOST = 64  # paths that are drawn

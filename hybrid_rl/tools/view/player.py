@@ -14,8 +14,8 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from hybrid_rl import UsageError
 from hybrid_rl.envs.mujoco.scenery import check_drawable
-from hybrid_rl.errors import UsageError
 from hybrid_rl.tools.view import programs
 from hybrid_rl.tools.view.programs import Actor, Decision, Numbers, World
 from hybrid_rl.tools.view.subject import Source, Subject

@@ -11,12 +11,12 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl import Episode
 from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.envs.mujoco.scenery import pose_of
 from hybrid_rl.protocols import Controller
 from hybrid_rl.tools.view import imagined
 from hybrid_rl.tools.view.subject import Subject, with_goals
-from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Considered, EnvState, Params
 
 Numbers = dict[str, Any]  # group.KEY of a goal -> value []

@@ -10,14 +10,12 @@ from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cached_property
 from typing import Any, get_args
 
+from hybrid_rl import Episode, Trained, UsageError
 from hybrid_rl.config import PAID
 from hybrid_rl.demonstrate import scripted_expert
-from hybrid_rl.errors import UsageError
 from hybrid_rl.fields import Must, choices, plain
 from hybrid_rl.goals import apply_changes
 from hybrid_rl.protocols import Controller
-from hybrid_rl.trained import Trained
-from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.traced import needs_world
 from hybrid_rl.types import Params
 
