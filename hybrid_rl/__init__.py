@@ -21,7 +21,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from hybrid_rl import fields, protocols, types
-    from hybrid_rl.analysis.curves import curves
+    from hybrid_rl.analysis import style
+    from hybrid_rl.analysis.curves import Curve, curves
     from hybrid_rl.analysis.dataframes import metrics
     from hybrid_rl.cli import arguments, command
     from hybrid_rl.config import load as compose
@@ -57,6 +58,7 @@ __all__ = [
     "Agent",
     "Body",
     "CheckpointError",
+    "Curve",
     "DivergenceError",
     "EnvState",
     "Episode",
@@ -87,6 +89,7 @@ __all__ = [
     "riccati",
     "sampling",
     "statistics",
+    "style",
     "train",
     "types",
 ]
@@ -95,6 +98,7 @@ _PUBLIC = {  # name -> its module, or MODULE:NAME; train and evaluate can be cal
     "Agent": "training.agent:Agent",
     "Body": "envs.mujoco.body:Body",
     "CheckpointError": "errors:CheckpointError",
+    "Curve": "analysis.curves:Curve",
     "DivergenceError": "errors:DivergenceError",
     "EnvState": "types:EnvState",
     "Episode": "training.episode:Episode",
@@ -125,6 +129,7 @@ _PUBLIC = {  # name -> its module, or MODULE:NAME; train and evaluate can be cal
     "riccati": "core.riccati",
     "sampling": "core.sampling",
     "statistics": "core.statistics",
+    "style": "analysis.style",
     "train": "train",
     "types": "types",
 }

@@ -27,7 +27,7 @@ import numpy as np
 from hybrid_rl.analysis.recorded import read as recorded
 from hybrid_rl.cli.arguments import Argument, number, read, whole
 from hybrid_rl.data.row_log import RowLog
-from hybrid_rl.tools.stand_in import Cartpole
+from hybrid_rl.envs.adapters.stand_in import Cartpole
 from hybrid_rl.types import Spec
 
 ARGUMENTS = (
@@ -52,7 +52,7 @@ class Trial:
         line = ["hybrid_rl.stand_in", "robot=cartpole", f"port={port}", f"faulty={faulty}"]
         self.console = open(self.folder.parent / "console", "w")  # noqa: SIM115
         self.stand = subprocess.Popen([*python, *line], stdout=subprocess.PIPE, text=True)
-        make = "env.make=hybrid_rl.tools.stand_in:Cartpole"
+        make = "env.make=hybrid_rl.envs.adapters.stand_in:Cartpole"
         self.line = [*python, "hybrid_rl.train", "task=robot", make, f"env.kwargs={{port:{port}}}"]
         self.line += ["algo=sac", "settings=light", "random_steps=200", "episode.steps=200"]
         self.line += ["total_steps=100000", "checkpoint_every=200", "log_every=100"]

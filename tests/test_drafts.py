@@ -14,13 +14,13 @@ from hybrid_rl.data import handover
 from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.drafts import open_own, own_folder, refuse_link, replacing
 from hybrid_rl.envs.adapters.robot import Robot
+from hybrid_rl.envs.adapters.stand_in import Cartpole
 from hybrid_rl.errors import CheckpointError, UsageError
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.files.lock import lock
 from hybrid_rl.run.logs.log import RunLog
 from hybrid_rl.run.logs.loggers import CSV, WandB
 from hybrid_rl.run.logs.tensorboard import TensorBoard
-from hybrid_rl.tools.stand_in import Cartpole
 from hybrid_rl.training.robot_process import RobotProcess, report
 from hybrid_rl.types import Spec
 

@@ -234,7 +234,7 @@ def test_an_id_of_ours_makes_parts_only(monkeypatch, tmp_path):
         EXTERNAL | {"id": "Hopper-v5", "kwargs": {"device": "cuda:0", "at": "10:30", "a": "b: c"}},
         EXTERNAL | {"id": "zz_robots:Reach-v4"},  # an installed package that depends on Gymnasium
         EXTERNAL | {"id": "hybrid_rl.envs.gym:hybrid_rl/Pendulum"},
-        ROBOT | {"make": "hybrid_rl.tools.stand_in:HalfCheetah"},
+        ROBOT | {"make": "hybrid_rl.envs.adapters.stand_in:HalfCheetah"},
     ],
     ids=lambda env: env.get("make") or env["id"],
 )
@@ -262,4 +262,4 @@ def test_a_name_that_a_user_types_or_passes_is_the_users(tmp_path, monkeypatch):
         parts.check({"env": dict(given.env)})
     with pytest.raises(UsageError, match=r"env\.make=json:loads: TypeError"):
         External(make="json:loads")
-    assert Robot(make="hybrid_rl.tools.stand_in:Cartpole").spec.act == 1
+    assert Robot(make="hybrid_rl.envs.adapters.stand_in:Cartpole").spec.act == 1

@@ -20,8 +20,7 @@ PAGE = (ROOT / "docs/python.md").read_text(encoding="utf-8")
 TOOLS = ROOT / "hybrid_rl/tools"
 PRIVATE = {  # tool -> what it imports that is not public: take names away, add none
     "benchmark": """
-        analysis.curves.plural analysis.style.GREY analysis.style.STYLE analysis.style.VERMILION
-        analysis.style.blank conf_files config drafts.replacing envs.mujoco.mjx_warp
+        analysis.curves.plural conf_files config drafts.replacing envs.mujoco.mjx_warp
         envs.mujoco.native networks.precision networks.precision.PRECISIONS
         run.files.integrity.write_text run.machine.jax_settings.CACHE
         run.machine.jax_settings.prepare run.machine.provenance
@@ -39,16 +38,19 @@ PRIVATE = {  # tool -> what it imports that is not public: take names away, add 
         training.rollout.rollout_with_actions
     """,
     "report": """
-        analysis.curves.Curve analysis.curves.area analysis.curves.format_number
-        analysis.curves.plural analysis.curves.spread analysis.curves_picture.plot
-        analysis.results.NOT_METRICS analysis.results.RunFolder analysis.results.differences
-        analysis.results.find analysis.style.COLOURS analysis.style.STYLE envs.mujoco.offscreen
-        envs.mujoco.scenery render run.files.integrity.write_text run.files.reading.json_file
-        run.files.reading.text run.logs.progress.clock
+        analysis.curves.area analysis.curves.format_number analysis.curves.plural
+        analysis.curves.spread analysis.curves_picture.plot analysis.results.NOT_METRICS
+        analysis.results.RunFolder analysis.results.differences analysis.results.find
+        envs.mujoco.offscreen envs.mujoco.scenery render run.files.integrity.write_text
+        run.files.reading.json_file run.files.reading.text run.logs.progress.clock
+    """,
+    "stand_in": """
+        envs.adapters.stand_in.ACTION envs.adapters.stand_in.Cartpole
+        envs.adapters.stand_in.HalfCheetah envs.adapters.stand_in.MOVED
+        envs.adapters.stand_in.OBSERVED envs.adapters.stand_in.RESET
+        envs.adapters.stand_in.StandIn envs.adapters.stand_in.UNPLUG
     """,
     "tuner": """
-        analysis.style.BLUE analysis.style.GREY analysis.style.STYLE analysis.style.VERMILION
-        analysis.style.blank analysis.style.legend_outside analysis.style.plain_log
         cli.combinations.jobs_of cli.combinations.labels cli.combinations.listed cli.sweep
         conf_files.options drafts.refuse_link errors.install figures overrides
         run.checkpoints.checkpoint run.files.integrity.write_text run.files.lock.lock

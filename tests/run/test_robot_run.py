@@ -17,16 +17,17 @@ from hybrid_rl import config, evaluate, robot
 from hybrid_rl.cli import command
 from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.envs.adapters.robot import Robot
+from hybrid_rl.envs.adapters.stand_in import ACTION, MOVED, RESET, Cartpole
 from hybrid_rl.envs.adapters.unstepped import ALONE
 from hybrid_rl.errors import UsageError, WorldError
 from hybrid_rl.run.files.lock import lock
 from hybrid_rl.tools.doctor.__main__ import CHECKS, examine
-from hybrid_rl.tools.stand_in import ACTION, MOVED, RESET, Cartpole, Physics
+from hybrid_rl.tools.stand_in import Physics
 from hybrid_rl.training.robot_process import RobotProcess
 from hybrid_rl.types import Spec
 
 pytestmark = pytest.mark.turns(3)
-LINE = ["task=robot", "env.make=hybrid_rl.tools.stand_in:Cartpole", "algo=sac"]
+LINE = ["task=robot", "env.make=hybrid_rl.envs.adapters.stand_in:Cartpole", "algo=sac"]
 SPEC = Spec(Cartpole.obs, len(Cartpole.low), Cartpole.dt)
 
 
@@ -73,7 +74,7 @@ def test_a_run_on_a_robot(port, tmp_path, capfd):
     capfd.readouterr()
     assert call(lambda: command.run(evaluate.main), f"run={folder}") == 2
     printed = capfd.readouterr()
-    assert printed.err == f"hybrid_rl: hybrid_rl.tools.stand_in_Cartpole: {ALONE}\n"
+    assert printed.err == f"hybrid_rl: hybrid_rl.envs.adapters.stand_in_Cartpole: {ALONE}\n"
     assert "compiling" not in printed.out
 
 

@@ -11,7 +11,7 @@ from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.training.actor import Actor
 
-LINE = ["task=robot", "env.make=hybrid_rl.tools.stand_in:Cartpole", "algo=sac"]
+LINE = ["task=robot", "env.make=hybrid_rl.envs.adapters.stand_in:Cartpole", "algo=sac"]
 LINE += ["policy.hidden=[8]", "critic.hidden=[8]", "policy_learner.batch_size=4", "total_steps=200"]
 LINE += ["random_steps=0", "episode.steps=10", "log_every=20"]
 

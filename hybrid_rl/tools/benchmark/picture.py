@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from hybrid_rl.analysis.style import GREY, STYLE, VERMILION, blank
+from hybrid_rl import style
 from hybrid_rl.drafts import replacing
 
 Table = dict[str, Any]  # part, what, unit, rows of name and rate
@@ -37,9 +37,9 @@ def _picture(tables: Sequence[Table], out: Path) -> None:
         key=lambda n: abs(math.log(_aspect(tables, n) / ASPECT)),
     )
     heights = _heights(tables, across)
-    with rc_context(STYLE):
+    with rc_context(style.STYLE):
         size = (WIDTH * across, sum(heights) + HEAD)
-        figure = blank(*size)
+        figure = style.blank(*size)
         grid = figure.subplots(len(heights), across, squeeze=False, height_ratios=heights)
         for i, (axes, table) in enumerate(zip(grid.flat, tables, strict=False)):
             _bars(axes, table, room=heights[i // across])
@@ -67,7 +67,9 @@ def _bars(axes: Any, table: Table, room: float) -> None:
     rates = [row["rate"] for row in table["rows"]]
     compared = any(name.startswith("ours") for name in names)
     ours = [not compared or name.startswith("ours") for name in names]
-    bars = axes.barh(names, rates, color=[VERMILION if own else GREY for own in ours], height=0.65)
+    bars = axes.barh(
+        names, rates, color=[style.VERMILION if own else style.GREY for own in ours], height=0.65
+    )
     axes.bar_label(bars, list(map(rounded, rates)), padding=3, fontsize=8)
     axes.set_xlim(0, 1.35 * max(rates))  # room for the value at the longest bar
     axes.set_ylim((room - HEAD) / BAR - 0.4, -0.6)

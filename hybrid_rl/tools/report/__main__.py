@@ -28,8 +28,8 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl import UsageError, __version__, arguments, command
-from hybrid_rl.analysis.curves import Curve, area, plural, spread
+from hybrid_rl import Curve, UsageError, __version__, arguments, command
+from hybrid_rl.analysis.curves import area, plural, spread
 from hybrid_rl.analysis.results import RunFolder, differences, find
 from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.files.reading import json_file

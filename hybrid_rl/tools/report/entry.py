@@ -13,8 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl import UsageError, curves
-from hybrid_rl.analysis.curves import Curve
+from hybrid_rl import Curve, UsageError, curves
 from hybrid_rl.analysis.results import RunFolder
 
 RETURN = "eval/return"

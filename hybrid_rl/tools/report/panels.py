@@ -12,11 +12,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hybrid_rl import UsageError, curves
-from hybrid_rl.analysis.curves import Curve
+from hybrid_rl import Curve, UsageError, curves, style
 from hybrid_rl.analysis.curves_picture import plot
 from hybrid_rl.analysis.results import NOT_METRICS, RunFolder
-from hybrid_rl.analysis.style import COLOURS, STYLE
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -75,7 +73,7 @@ def svg(figure: "Figure", name: str) -> str:
     import matplotlib
 
     text = io.StringIO()
-    with matplotlib.rc_context(STYLE):
+    with matplotlib.rc_context(style.STYLE):
         figure.savefig(text, format="svg", transparent=True, metadata={"Date": None})
     element = text.getvalue().partition("<svg")[2]
     element = re.sub(r"<metadata>.*?</metadata>", "", element, flags=re.DOTALL)
@@ -83,7 +81,7 @@ def svg(figure: "Figure", name: str) -> str:
     element = re.sub(r" font-family: [^;]+;", "", element)
     own = re.sub(r"\W", "-", name)
     element = re.sub(r'(id="|#)([mp][0-9a-f]{10})\b', rf"\1{own}-\2", element)
-    colours = {colour.lower(): f"var(--c{i})" for i, colour in enumerate(COLOURS[:-1])}
+    colours = {colour.lower(): f"var(--c{i})" for i, colour in enumerate(style.COLOURS[:-1])}
     colours |= {GRID: "var(--grid)"} | dict.fromkeys(INK, "currentColor")
     for colour, name in colours.items():
         element = element.replace(colour, name)

@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
-from hybrid_rl import UsageError
-from hybrid_rl.analysis.style import BLUE, GREY, STYLE, VERMILION, blank, legend_outside, plain_log
+from hybrid_rl import UsageError, style
 from hybrid_rl.run.files.reading import json_file
 
 if TYPE_CHECKING:
@@ -25,8 +24,8 @@ if TYPE_CHECKING:
 ACROSS = 3  # panels in a row
 WIDTH = 26  # [characters] of a title
 KINDS: dict[str, dict[str, Any]] = {  # state of a trial -> its points
-    "complete": {"color": BLUE, "marker": "o", "label": "finished"},
-    "pruned": {"color": GREY, "marker": "x", "label": "pruned, at its last evaluation"},
+    "complete": {"color": style.BLUE, "marker": "o", "label": "finished"},
+    "pruned": {"color": style.GREY, "marker": "x", "label": "pruned, at its last evaluation"},
 }
 
 
@@ -60,15 +59,15 @@ def draw(numbers: dict[str, Any]) -> "Figure":
     keys = numbers["keys"]
     across = min(ACROSS, len(keys) + 1)
     down = math.ceil((len(keys) + 1) / across)
-    with matplotlib.rc_context(STYLE):
-        picture = blank(3.0 * across, 2.6 * down + 0.4)
+    with matplotlib.rc_context(style.STYLE):
+        picture = style.blank(3.0 * across, 2.6 * down + 0.4)
         panels = picture.subplots(down, across, squeeze=False).flat
         _importances(next(panels), numbers["importances"])
         for key, kind in keys.items():
             axes = next(panels)
             _results(axes, numbers, key, kind)
             axes.set_ylabel("result" if numbers["metric"] == "final_eval" else numbers["metric"])
-        legend_outside(axes)
+        style.legend_outside(axes)
         for unused in panels:
             unused.set_axis_off()
     return picture
@@ -78,7 +77,9 @@ def _importances(axes: "Axes", shares: dict[str, float]) -> None:
     """A bar for each key, the longest on top."""
     ordered = sorted(shares.items(), key=lambda pair: pair[1])
     names = [key.rpartition(".")[2] for key, _ in ordered]
-    axes.barh(range(len(names)), [share for _, share in ordered], color=BLUE, tick_label=names)
+    axes.barh(
+        range(len(names)), [share for _, share in ordered], color=style.BLUE, tick_label=names
+    )
     axes.set_xlim(0, 1)
     axes.set_title("importance" if shares else "importance: needs two results")
     axes.grid(axis="y", visible=False)
@@ -88,16 +89,16 @@ def _results(axes: "Axes", numbers: dict[str, Any], key: str, kind: str) -> None
     """The results of all trials over the values of a key; the best one has a ring."""
     known = [row for row in numbers["trials"] if row["result"] is not None]
     names = sorted({row["values"][key] for row in known}, key=_order) if kind == "names" else []
-    for state, style in KINDS.items():
+    for state, marks in KINDS.items():
         rows = [row for row in known if row["state"] == state]
         x = [_position(row["values"][key], names) for row in rows]
-        axes.plot(x, [row["result"] for row in rows], linestyle="", **style)
+        axes.plot(x, [row["result"] for row in rows], linestyle="", **marks)
     for row in known:
         if row["trial"] == numbers["best"]:
             ring: dict[str, Any] = {
                 "markersize": 11,
                 "markerfacecolor": "none",
-                "markeredgecolor": VERMILION,
+                "markeredgecolor": style.VERMILION,
             }
             at = _position(row["values"][key], names)
             axes.plot([at], [row["result"]], linestyle="", marker="o", label="best", **ring)
@@ -106,7 +107,7 @@ def _results(axes: "Axes", numbers: dict[str, Any], key: str, kind: str) -> None
         axes.set_xlim(-0.5, len(names) - 0.5)
     elif kind == "log" and known:
         axes.set_xscale("log")
-        plain_log(axes.xaxis, narrow=True)
+        style.plain_log(axes.xaxis, narrow=True)
     axes.set_title("\n".join(textwrap.wrap(key.replace(".", ". "), WIDTH)).replace(". ", "."))
 
 
