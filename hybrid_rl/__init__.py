@@ -21,8 +21,10 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from hybrid_rl import fields, protocols, types
-    from hybrid_rl.analysis.curves import curves
+    from hybrid_rl.analysis import style
+    from hybrid_rl.analysis.curves import Curve, curves
     from hybrid_rl.analysis.dataframes import metrics
+    from hybrid_rl.cli import arguments, command
     from hybrid_rl.config import load as compose
     from hybrid_rl.core import (
         adjoint,
@@ -37,13 +39,14 @@ if TYPE_CHECKING:
     from hybrid_rl.envs.mujoco.body import Body
     from hybrid_rl.envs.mujoco.physics import Physics
     from hybrid_rl.envs.trial import check
-    from hybrid_rl.errors import DivergenceError, UsageError
+    from hybrid_rl.errors import CheckpointError, DivergenceError, UsageError
     from hybrid_rl.evaluate import evaluate
     from hybrid_rl.fields import part
     from hybrid_rl.goals import retargeted
     from hybrid_rl.named import load, make
     from hybrid_rl.online import OnlineLearner
     from hybrid_rl.train import train
+    from hybrid_rl.trained import Trained
     from hybrid_rl.training.agent import Agent
     from hybrid_rl.training.episode import Episode
     from hybrid_rl.training.loop import Loop
@@ -54,6 +57,8 @@ __version__ = "0.3.0.dev0"
 __all__ = [
     "Agent",
     "Body",
+    "CheckpointError",
+    "Curve",
     "DivergenceError",
     "EnvState",
     "Episode",
@@ -61,9 +66,12 @@ __all__ = [
     "OnlineLearner",
     "Physics",
     "Spec",
+    "Trained",
     "UsageError",
     "adjoint",
+    "arguments",
     "check",
+    "command",
     "compose",
     "curves",
     "evaluate",
@@ -81,6 +89,7 @@ __all__ = [
     "riccati",
     "sampling",
     "statistics",
+    "style",
     "train",
     "types",
 ]
@@ -88,6 +97,8 @@ __all__ = [
 _PUBLIC = {  # name -> its module, or MODULE:NAME; train and evaluate can be called
     "Agent": "training.agent:Agent",
     "Body": "envs.mujoco.body:Body",
+    "CheckpointError": "errors:CheckpointError",
+    "Curve": "analysis.curves:Curve",
     "DivergenceError": "errors:DivergenceError",
     "EnvState": "types:EnvState",
     "Episode": "training.episode:Episode",
@@ -95,9 +106,12 @@ _PUBLIC = {  # name -> its module, or MODULE:NAME; train and evaluate can be cal
     "OnlineLearner": "online:OnlineLearner",
     "Physics": "envs.mujoco.physics:Physics",
     "Spec": "types:Spec",
+    "Trained": "trained:Trained",
     "UsageError": "errors:UsageError",
     "adjoint": "core.adjoint",
+    "arguments": "cli.arguments",
     "check": "envs.trial:check",
+    "command": "cli.command",
     "compose": "config:load",
     "curves": "analysis.curves:curves",
     "evaluate": "evaluate",
@@ -115,6 +129,7 @@ _PUBLIC = {  # name -> its module, or MODULE:NAME; train and evaluate can be cal
     "riccati": "core.riccati",
     "sampling": "core.sampling",
     "statistics": "core.statistics",
+    "style": "analysis.style",
     "train": "train",
     "types": "types",
 }
@@ -138,6 +153,9 @@ def __dir__() -> list[str]:
 # matrices are factorised at once, and its threads wait for one another: up to 30 times slower.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-# In a checkout `envs/` stands beside this package; in a wheel it is inside it.
-if not os.path.isdir(os.path.join(os.path.dirname(__file__), "envs")):
-    __path__ = [*__path__, os.path.dirname(os.path.dirname(__file__))]
+# `python -m hybrid_rl.view` is tools/view. In a checkout `envs/` stands beside this package; in a
+# wheel it is inside it.
+_HERE = os.path.dirname(__file__)
+__path__ = [*__path__, os.path.join(_HERE, "tools")]
+if not os.path.isdir(os.path.join(_HERE, "envs")):
+    __path__ = [*__path__, os.path.dirname(_HERE)]

@@ -5,13 +5,15 @@ import sys
 from pathlib import Path
 
 MAIN = 'if __name__ == "__main__":'
+FORMS = ("[a-z]*.py", "[a-z]*/__main__.py")  # files of a command
 
 
 def commands() -> dict[str, str]:
     """Name of a command -> the first line of its docstring, without an import."""
     names = {}
     package = Path(__file__).parent
-    for path in (*package.glob("[a-z]*.py"), *package.glob("[a-z]*/__main__.py")):
+    homes = (package, package / "tools")
+    for path in (found for home in homes for form in FORMS for found in home.glob(form)):
         text = path.read_text(encoding="utf-8")
         if MAIN in text:
             name = path.parent.name if path.stem == "__main__" else path.stem

@@ -47,7 +47,7 @@ SUFFIXES = (".png", ".pdf", ".svg")
 TABLE = ".csv"  # of studies with a function `table`
 DPI, MOST_PIXELS = 200, 1600  # of a .png; across
 DEFAULT = "learning_curves"
-HOMES = ("hybrid_rl.analysis", "hybrid_rl.thesis.studies")  # packages whose studies are listed
+HOMES = ("hybrid_rl.analysis", "hybrid_rl.thesis.studies", "hybrid_rl.tools.tuner")  # of studies
 ARGUMENTS = (  # of every study
     Argument("study", DEFAULT, "name of the study, or list"),
     Argument("out", "figure.png", f"the picture: {', '.join(SUFFIXES)}; JSON next to it"),

@@ -27,19 +27,14 @@ class CheckedSweeper(Sweeper):
 
 
 class TunedSweeper(CheckedSweeper):
-    """`hybrid_rl.cli.tuned.Tuner`, with the picture of `hybrid_rl.analysis.tuning`."""
+    """`hybrid_rl.tools.tuner.sweeper.Tuner`."""
 
     def __init__(self, params: Any = None, **settings: Any) -> None:
         self.given = (settings, params)
 
     def setup(self, **given: Any) -> None:
         """Hydra's: what to run, and by which launcher."""
-        from hybrid_rl import figures
-        from hybrid_rl.analysis import tuning
-        from hybrid_rl.cli import tuned
+        from hybrid_rl.tools.tuner import sweeper
 
-        def drawn(numbers: dict[str, Any], out: Any) -> None:
-            figures.save(tuning.draw(numbers), numbers, out)
-
-        self.sweeper = tuned.Tuner(*self.given, drawn)
+        self.sweeper = sweeper.Tuner(*self.given)
         self.sweeper.setup(**given)

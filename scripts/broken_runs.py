@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from hybrid_rl.cli.arguments import Argument, read, whole
-from hybrid_rl.doctor.__main__ import examine
+from hybrid_rl.tools.doctor.__main__ import examine
 from scripts.broken.faulty_world import AUDITED, INVENTED
 
 HERE = Path(__file__).parent / "broken"  # the user's files: a world, and its task

@@ -29,11 +29,11 @@ from hybrid_rl.cli.arguments import Argument, one_of, read
 from hybrid_rl.errors import UsageError
 from hybrid_rl.goals import retargeted
 from hybrid_rl.run.machine.provenance import device
+from hybrid_rl.tools.view.subject import quicker
 from hybrid_rl.trained import Trained
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.decider import Decider
 from hybrid_rl.types import Params
-from hybrid_rl.view.subject import quicker
 from scripts.new_goals import overrides, rows
 from scripts.seeds import split_names
 

@@ -40,7 +40,7 @@ TASKS += ("sawyer_torque", "cart_swing_up", "lander", "no_dynamics", "halfcheeta
 PACKAGES = {  # page of the reference -> folders and modules
     "Commands": (
         *("train", "evaluate", "render", "figures"),
-        *("demonstrate", "export", "report", "list"),
+        *("demonstrate", "export", "list"),
     ),
     "From Python": ("online", "trained", "goals", "robot"),
     "Configuration": ("config", "overrides", "named"),
@@ -54,7 +54,8 @@ PACKAGES = {  # page of the reference -> folders and modules
     "Learners and data": ("learners", "data"),
     "Training": ("training",),
     "Runs": ("run",),
-    "Analysis": ("analysis", "doctor"),
+    "Analysis": ("analysis",),
+    "Tools": ("tools",),
     "Thesis": ("thesis.studies",),
     "Environments": ("envs",),
 }

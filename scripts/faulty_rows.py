@@ -19,8 +19,8 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.cli.arguments import Argument, read
-from hybrid_rl.doctor import observed, regular, task
-from hybrid_rl.doctor.evidence import Evidence
+from hybrid_rl.tools.doctor import observed, regular, task
+from hybrid_rl.tools.doctor.evidence import Evidence
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import Params, Spec, Transition

@@ -28,10 +28,10 @@ from hybrid_rl.proposals.knots import KnotsProposal
 from hybrid_rl.proposals.mixture import MixtureProposal
 from hybrid_rl.proposals.noise import NoiseProposal
 from hybrid_rl.proposals.policy import PolicyProposal
+from hybrid_rl.tools.view.subject import replace_part
 from hybrid_rl.trained import Trained, load
 from hybrid_rl.training.rollout import advance, begin, scores
 from hybrid_rl.types import Params
-from hybrid_rl.view.subject import replace_part
 from scripts.seeds import Row, every, split_names, write
 
 FACTORS = (0.8, 0.6, 0.4, 0.2)

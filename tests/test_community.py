@@ -7,8 +7,8 @@ from functools import partial
 import pytest
 from tiny import call, only_line
 
-from hybrid_rl import report
 from hybrid_rl.cli import command
+from hybrid_rl.tools.report import __main__ as report
 from scripts.pages import __main__ as pages
 from scripts.pages import community
 

@@ -23,13 +23,13 @@ from hybrid_rl import (
 from hybrid_rl.cli import command
 from hybrid_rl.data import archive
 from hybrid_rl.data import trained as saved
-from hybrid_rl.doctor import __main__ as doctor
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import folder as run_folder
+from hybrid_rl.tools.doctor import __main__ as doctor
+from hybrid_rl.tools.view import __main__ as view
 from hybrid_rl.trained import read
-from hybrid_rl.view import __main__ as view
 
 EXTERNAL = {"_target_": "hybrid_rl.envs.adapters.external.External"}
 ROBOT = {"_target_": "hybrid_rl.envs.adapters.robot.Robot"}

@@ -8,13 +8,14 @@ import pytest
 from foreign import METRIC, ROW, made, no_plain_file, refused
 from tiny import call, only_line
 
-from hybrid_rl import figures, report
+from hybrid_rl import figures
 from hybrid_rl.analysis import long_table
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.logs.log import RunLog
 from hybrid_rl.run.logs.loggers import CSV
+from hybrid_rl.tools.report import __main__ as report
 
 READ = {"config.yaml": "settings", "metrics.jsonl": "rows", "summary.json": "summary"}
 

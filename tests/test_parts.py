@@ -49,7 +49,7 @@ WORDS = "import_module|__import__|exec|eval|instantiate|locate|get_class|get_met
 FOLLOWED = {  # what is imported by a name that is no constant: judged, typed, or from a table
     "hybrid_rl/parts.py": {"module", "found[1]"},
     "envs/adapters/external.py": {"registered(self.id)"},
-    "envs/adapters/stand_in.py": {"kind.id"},
+    "hybrid_rl/tools/stand_in.py": {"kind.id"},
     "envs/mujoco/offscreen.py": {"f'mujoco.{name}'"},
     "hybrid_rl/__init__.py": {"f'hybrid_rl.{module}'"},
     "hybrid_rl/figures.py": {"home", "module", "name"},

@@ -2,6 +2,7 @@
 
 import ast
 import re
+from functools import cache
 from importlib import import_module
 from inspect import getdoc, signature
 from pathlib import Path
@@ -16,6 +17,54 @@ from hybrid_rl.settings.registry import choices
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/*.md"))]
 PAGE = (ROOT / "docs/python.md").read_text(encoding="utf-8")
+TOOLS = ROOT / "hybrid_rl/tools"
+PRIVATE = {  # tool -> what it imports that is not public: take names away, add none
+    "benchmark": """
+        analysis.curves.plural conf_files config drafts.replacing envs.mujoco.mjx_warp
+        envs.mujoco.native networks.precision networks.precision.PRECISIONS
+        run.files.integrity.write_text run.machine.jax_settings.CACHE
+        run.machine.jax_settings.prepare run.machine.provenance
+    """,
+    "demo": """
+        analysis.drawing.SUFFIXES conf_files.options envs.mujoco.offscreen errors.install
+        render.draw_film render.episode trained.names trained.read
+    """,
+    "doctor": """
+        analysis.held_out.RandomActions analysis.results.RunFolder config.Run
+        core.lifting.is_identity data.replay.unpack envs.adapters.unstepped.Unstepped
+        run.checkpoints.checkpoint run.folder run.logs.rows.of_world
+        run.machine.jax_settings.prepare trained.build_run trained.restore
+        training.host_loop.HostEvaluator training.rollout.evaluate_episodes
+        training.rollout.rollout_with_actions
+    """,
+    "report": """
+        analysis.curves.area analysis.curves.format_number analysis.curves.plural
+        analysis.curves.spread analysis.curves_picture.plot analysis.results.NOT_METRICS
+        analysis.results.RunFolder analysis.results.differences analysis.results.find
+        envs.mujoco.offscreen envs.mujoco.scenery render run.files.integrity.write_text
+        run.files.reading.json_file run.files.reading.text run.logs.progress.clock
+    """,
+    "stand_in": """
+        envs.adapters.stand_in.ACTION envs.adapters.stand_in.Cartpole
+        envs.adapters.stand_in.HalfCheetah envs.adapters.stand_in.MOVED
+        envs.adapters.stand_in.OBSERVED envs.adapters.stand_in.RESET
+        envs.adapters.stand_in.StandIn envs.adapters.stand_in.UNPLUG
+    """,
+    "tuner": """
+        cli.combinations.jobs_of cli.combinations.labels cli.combinations.listed cli.sweep
+        conf_files.options drafts.refuse_link errors.install figures overrides
+        run.checkpoints.checkpoint run.files.integrity.write_text run.files.lock.lock
+        run.files.reading.json_file run.logs.records.Row run.session.RETURNS
+    """,
+    "view": """
+        arguments.ROBOT arguments.ROBOT_CHANGES arguments.robot checks.SEEDS conf_files.options
+        config.PAID demonstrate.scripted_expert envs.mujoco.mjcf envs.mujoco.physics.PhysicsState
+        envs.mujoco.scenery envs.mujoco.scenery.check_drawable envs.mujoco.scenery.pose_of
+        envs.mujoco.scenery.simulated errors.install fields.Must fields.choices fields.plain
+        goals.apply_changes lifting.lift run.checkpoints.checkpoint trained.build_run
+        trained.load_named trained.of training.rollout.evaluation_keys training.traced.needs_world
+    """,
+}
 
 
 def rows(table):
@@ -48,23 +97,44 @@ def used(code):
             known |= {each.asname or each.name: f"{parent}{each.name}" for each in node.names}
     for node in ast.walk(tree):
         name = ast.unparse(node) if isinstance(node, ast.Attribute) else ""
-        if re.fullmatch(r"[\w.]+", name):
-            root, _, rest = name.partition(".")
-            full = f"{known.get(root)}.{rest}".split(".")
+        root, _, rest = name.partition(".")
+        full = f"{known.get(root)}.{rest}".split(".")
+        open_to_all = known.get(root) in ("hybrid_rl", *(f"hybrid_rl.{each}" for each in MODULES))
+        if re.fullmatch(r"[\w.]+", name) and open_to_all:
             known[name] = ".".join(full[: 3 if full[1] in MODULES else 2])
     return {name for name in known.values() if name.split(".")[0] == "hybrid_rl"}
 
 
+@cache
+def public():
+    """The names that the page of public names lists, and the parts that files of conf/ name."""
+    names = {"hybrid_rl", "hybrid_rl.envs.gym", *(f"hybrid_rl.{name}" for name in hr.__all__)}
+    names |= {f"hybrid_rl.{module}.{name}" for module in MODULES for name in MODULES[module]}
+    names |= {f"hybrid_rl.protocols.{name}" for name in dir(hr.protocols)} | {
+        "hybrid_rl.__version__"
+    }
+    files = (path.read_text(encoding="utf-8") for path in (ROOT / "conf").rglob("*.yaml"))
+    names |= {name for text in files for name in re.findall(r"_target_: (hybrid_rl\S+)", text)}
+    return names | {name for parts in choices(ROOT / "conf").values() for name in parts.values()}
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_what_a_page_imports_is_public(page):
-    """A name that the page of public names lists, or a part that a file of conf/ names."""
-    public = {"hybrid_rl", "hybrid_rl.envs.gym", *(f"hybrid_rl.{name}" for name in hr.__all__)}
-    public |= {f"hybrid_rl.{module}.{name}" for module in MODULES for name in MODULES[module]}
-    files = (path.read_text(encoding="utf-8") for path in (ROOT / "conf").rglob("*.yaml"))
-    public |= {name for text in files for name in re.findall(r"_target_: (hybrid_rl\S+)", text)}
-    public |= {name for names in choices(ROOT / "conf").values() for name in names.values()}
     blocks = re.findall(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
-    assert {name for block in blocks for name in used(block)} <= public
+    assert {name for block in blocks for name in used(block)} <= public()
+
+
+def test_tools_import_what_is_public():
+    """As a project of a user's would; the names of PRIVATE are those that are left."""
+    found = {}
+    for file in TOOLS.rglob("*.py"):
+        names = used(file.read_text(encoding="utf-8")) - public()
+        names = {name for name in names if not f"{name}.".startswith("hybrid_rl.tools.")}
+        tool = found.setdefault(file.relative_to(TOOLS).parts[0].removesuffix(".py"), set())
+        tool |= {name.removeprefix("hybrid_rl.") for name in names}
+    assert {tool: names for tool, names in found.items() if names} == {
+        tool: {*names.split()} for tool, names in PRIVATE.items()
+    }
 
 
 @pytest.mark.parametrize("name", hr.__all__)

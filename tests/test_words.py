@@ -8,7 +8,7 @@ ROOT = Path(__file__).resolve().parents[1]
 CODE = ("hybrid_rl/**/*.py", "envs/**/*.py", "hydra_plugins/*.py", "tests/**/*.py", "scripts/*.py")
 TEXT = ("conf/**/*.yaml", "tests/conf/**/*.yaml", "*.md", "docs/**/*.md", "pyproject.toml")
 PICTURES = re.compile(
-    r"hybrid_rl/(analysis|benchmark|render|view)|thesis|tests/(analysis|test_figures|test_render)"
+    r"hybrid_rl/(analysis|render|tools)|thesis|tests/(analysis|test_figures|test_render)"
 )
 WORDS = {  # regular expression -> what to write
     "told": "the verb for what happens: print, log, report",

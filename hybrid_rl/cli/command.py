@@ -16,6 +16,8 @@ from typing import Any, NoReturn
 from hybrid_rl.cli import interrupt
 from hybrid_rl.errors import DivergenceError, UsageError, printable, user_line
 
+install = interrupt.install  # before what takes long to import: Ctrl-C ends it in one line
+
 
 def report(error: BaseException) -> NoReturn:
     """End the process with one line and the right code, or with a traceback for a fault of ours."""

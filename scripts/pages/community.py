@@ -1,8 +1,8 @@
 """docs/results/community.md: a table of docs/results/community/*.json, which anyone may extend.
 
-`python -m hybrid_rl.report run=DIR out=FILE.json` writes such a file; hybrid_rl.analysis.entry has
-its form. In place of `returns` and `decisions_per_s` a path of values.py may stand, to numbers that
-are in docs/results already.
+`python -m hybrid_rl.report run=DIR out=FILE.json` writes such a file, whose form stands in
+hybrid_rl.tools.report.entry. In place of `returns` and `decisions_per_s` a path of values.py may
+stand, to numbers that are in docs/results already.
 """
 
 import json
@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.analysis.entry import KEYS, ROW
+from hybrid_rl.tools.report.entry import KEYS, ROW
 from scripts.pages.values import RESULTS, at, band
 
 FOLDER = RESULTS / "community"

@@ -11,12 +11,12 @@ import pytest
 from matplotlib.figure import Figure
 from tiny import call
 
-from hybrid_rl.benchmark import __main__ as benchmark
-from hybrid_rl.benchmark import others, ours, parts, picture, products
-from hybrid_rl.benchmark.picture import draw
-from hybrid_rl.benchmark.race import Contestant, race
 from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import mjcf, mjx_warp
+from hybrid_rl.tools.benchmark import __main__ as benchmark
+from hybrid_rl.tools.benchmark import others, ours, parts, picture, products
+from hybrid_rl.tools.benchmark.picture import draw
+from hybrid_rl.tools.benchmark.race import Contestant, race
 
 ROOT = Path(__file__).resolve().parents[2]
 
