@@ -19,13 +19,15 @@ import os
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from hybrid_rl.version import __version__ as __version__
+
 if TYPE_CHECKING:
     from hybrid_rl import fields, protocols, types
     from hybrid_rl.analysis import style
     from hybrid_rl.analysis.curves import Curve, curves
     from hybrid_rl.analysis.dataframes import metrics
+    from hybrid_rl.api import load, make
     from hybrid_rl.cli import arguments, command
-    from hybrid_rl.config import load as compose
     from hybrid_rl.core import (
         adjoint,
         fisher,
@@ -42,17 +44,15 @@ if TYPE_CHECKING:
     from hybrid_rl.errors import CheckpointError, DivergenceError, UsageError
     from hybrid_rl.evaluate import evaluate
     from hybrid_rl.fields import part
-    from hybrid_rl.goals import retargeted
-    from hybrid_rl.named import load, make
-    from hybrid_rl.online import OnlineLearner
+    from hybrid_rl.outside.online import OnlineLearner
+    from hybrid_rl.run.retarget import retargeted
+    from hybrid_rl.run.saved import Trained
+    from hybrid_rl.settings.build import load as compose
     from hybrid_rl.train import train
-    from hybrid_rl.trained import Trained
     from hybrid_rl.training.agent import Agent
     from hybrid_rl.training.episode import Episode
     from hybrid_rl.training.loop import Loop
     from hybrid_rl.types import EnvState, Spec
-
-__version__ = "0.3.0.dev0"
 
 __all__ = [
     "Agent",
@@ -103,16 +103,16 @@ _PUBLIC = {  # name -> its module, or MODULE:NAME; train and evaluate can be cal
     "EnvState": "types:EnvState",
     "Episode": "training.episode:Episode",
     "Loop": "training.loop:Loop",
-    "OnlineLearner": "online:OnlineLearner",
+    "OnlineLearner": "outside.online:OnlineLearner",
     "Physics": "envs.mujoco.physics:Physics",
     "Spec": "types:Spec",
-    "Trained": "trained:Trained",
+    "Trained": "run.saved:Trained",
     "UsageError": "errors:UsageError",
     "adjoint": "core.adjoint",
     "arguments": "cli.arguments",
     "check": "envs.trial:check",
     "command": "cli.command",
-    "compose": "config:load",
+    "compose": "settings.build:load",
     "curves": "analysis.curves:curves",
     "evaluate": "evaluate",
     "fields": "fields",
@@ -120,12 +120,12 @@ _PUBLIC = {  # name -> its module, or MODULE:NAME; train and evaluate can be cal
     "fully_observed": "envs.analytic.state:fully_observed",
     "least_squares": "core.least_squares",
     "lifting": "core.lifting",
-    "load": "named:load",
-    "make": "named:make",
+    "load": "api:load",
+    "make": "api:make",
     "metrics": "analysis.dataframes:metrics",
     "part": "fields:part",
     "protocols": "protocols",
-    "retargeted": "goals:retargeted",
+    "retargeted": "run.retarget:retargeted",
     "riccati": "core.riccati",
     "sampling": "core.sampling",
     "statistics": "core.statistics",

@@ -31,7 +31,6 @@ import jax
 import numpy as np
 from omegaconf import OmegaConf
 
-from hybrid_rl import config as configuration
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import CONFIG_DIR, MODE, Argument, flag, output, read, whole
@@ -44,7 +43,8 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run.files.reading import json_file
 from hybrid_rl.run.machine.jax_settings import prepare
-from hybrid_rl.trained import OBJECTIVES, Trained, load
+from hybrid_rl.run.saved import OBJECTIVES, Trained, load
+from hybrid_rl.settings import build as configuration
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import Params, Transition

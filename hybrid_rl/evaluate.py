@@ -58,7 +58,6 @@ from hybrid_rl.cli.arguments import (
 )
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.errors import UsageError
-from hybrid_rl.goals import load_changed
 from hybrid_rl.networks import precision
 from hybrid_rl.networks.precision import PRECISIONS
 from hybrid_rl.run.evaluations import finish_episodes
@@ -66,7 +65,8 @@ from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.folder import members
 from hybrid_rl.run.logs.progress import say
 from hybrid_rl.run.machine import memory
-from hybrid_rl.trained import Trained
+from hybrid_rl.run.retarget import load_changed
+from hybrid_rl.run.saved import Trained
 from hybrid_rl.training.host_loop import HostEvaluator
 from hybrid_rl.training.rollout import advance, begin, evaluation_keys
 

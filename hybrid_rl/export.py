@@ -46,9 +46,9 @@ def main() -> None:
     given, _ = read(__doc__, ARGUMENTS)
     others = (".py",) if given["out"].endswith(".npz") else ()
     out = output("out", given["out"], SUFFIXES, *others)
-    from hybrid_rl import exported  # imports JAX, for seconds
-    from hybrid_rl.drafts import replacing
-    from hybrid_rl.trained import load_named
+    from hybrid_rl.files.atomic import replacing
+    from hybrid_rl.run import exported  # imports JAX, for seconds
+    from hybrid_rl.run.saved import load_named
 
     trained = load_named(given)
     if given["mode"] == "policy" and "policy" not in trained.controllers:

@@ -31,13 +31,13 @@ from typing import TYPE_CHECKING, Any, Protocol, cast
 from hybrid_rl.analysis.style import STYLE
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import HELP, Argument, output, read
-from hybrid_rl.config import load
-from hybrid_rl.drafts import replacing
 from hybrid_rl.errors import UsageError, user_line
+from hybrid_rl.files.atomic import replacing
 from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.files.reading import json_file
 from hybrid_rl.run.logs.records import arrays, json_value
 from hybrid_rl.run.machine.jax_settings import prepare
+from hybrid_rl.settings.build import load
 from hybrid_rl.settings.complete import nearest
 
 if TYPE_CHECKING:

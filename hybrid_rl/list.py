@@ -19,7 +19,7 @@ from pathlib import Path
 
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import CONFIG_DIR, read
-from hybrid_rl.conf_files import CONF, THESIS, search_path
+from hybrid_rl.settings.groups import CONF, THESIS, search_path
 
 MARKS = ("# Has ", "# Needs ")  # of a task, and of a method that not every task fits
 GROUPS = {"task": "Tasks", "algo": "Methods", "experiment": "Experiments"}

@@ -72,7 +72,7 @@ def episode(
 ) -> Film:
     """One episode of a loaded run.
 
-    trained: what `hybrid_rl.trained.load` returns. seed: of one of its learners; None is
+    trained: what `hybrid_rl.run.saved.load` returns. seed: of one of its learners; None is
     the first. steps: at most this many decisions; 0 is the task's own limit. number: of the
     evaluation's episode, from 0.
     """
@@ -207,7 +207,7 @@ def main() -> None:
     from hybrid_rl.envs.adapters.external import External
     from hybrid_rl.envs.mujoco import offscreen
     from hybrid_rl.envs.mujoco.scenery import scene_of
-    from hybrid_rl.goals import load_changed
+    from hybrid_rl.run.retarget import load_changed
 
     default = f"{named}/video.mp4" if given["run"] else f"{Path(named).stem}.mp4"
     out = Path(given["out"] or default)

@@ -25,13 +25,13 @@ import jax
 
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import MODE, Argument, flag, number, read
-from hybrid_rl.drafts import refuse_link
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import UsageError
+from hybrid_rl.files.atomic import refuse_link
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.files.lock import lock
 from hybrid_rl.run.machine.jax_settings import prepare
-from hybrid_rl.trained import build_run, load
+from hybrid_rl.run.saved import build_run, load
 from hybrid_rl.training.actor import LOST, Actor
 from hybrid_rl.training.robot_process import report
 

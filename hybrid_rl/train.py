@@ -32,19 +32,19 @@ import numpy as np
 from hydra.core.hydra_config import HydraConfig
 from omegaconf import DictConfig
 
-import hybrid_rl
-from hybrid_rl import overrides
+from hybrid_rl import api
 from hybrid_rl.cli import command, hydra_line, interrupt
-from hybrid_rl.config import Run
 from hybrid_rl.errors import DivergenceError, UsageError
 from hybrid_rl.run import assembled, divergence, folder, launch, together
 from hybrid_rl.run.logs import curve
 from hybrid_rl.run.logs.progress import say
+from hybrid_rl.settings import words as overrides
+from hybrid_rl.settings.build import Run
 from hybrid_rl.training.agent import Agent
 
 if TYPE_CHECKING:
     from hybrid_rl.analysis.curves import Curve
-    from hybrid_rl.trained import Trained
+    from hybrid_rl.run.saved import Trained
 
 OnRow = Callable[[dict[str, Any]], Any]
 
@@ -74,8 +74,8 @@ class Result(dict[str, Any]):
     def load(self) -> "Trained":
         """The learners at the newest checkpoint; `.policy(seed)` maps observations to actions."""
         if self._run is None:
-            return hybrid_rl.load(self.folder)
-        from hybrid_rl import trained
+            return api.load(self.folder)
+        from hybrid_rl.run import saved as trained
 
         return trained.of(self._run, self.folder)
 

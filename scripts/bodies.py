@@ -25,9 +25,9 @@ from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, flag, read, several, whole
 from hybrid_rl.evaluate import evaluate
-from hybrid_rl.goals import disturbed
 from hybrid_rl.run import folder
-from hybrid_rl.trained import Trained, load
+from hybrid_rl.run.retarget import disturbed
+from hybrid_rl.run.saved import Trained, load
 from scripts.seeds import Row, write
 
 MODES = {"eval/return": "full", "eval/policy_return": "policy"}  # of metrics.jsonl

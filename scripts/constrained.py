@@ -19,8 +19,8 @@ from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import CHANGES, CONFIG_DIR, GOAL, POLICY, Argument, read, whole
 from hybrid_rl.controllers.gradient import GradientController
 from hybrid_rl.errors import UsageError
-from hybrid_rl.goals import load_changed
-from hybrid_rl.trained import Trained, load
+from hybrid_rl.run.retarget import load_changed
+from hybrid_rl.run.saved import Trained, load
 from hybrid_rl.training.rollout import advance, begin, scores
 from scripts.seeds import Row, every, split_names, write
 

@@ -23,14 +23,14 @@ os.environ["XLA_FLAGS"] = os.environ.get("XLA_FLAGS", "") + " --xla_cpu_multi_th
 import jax
 import numpy as np
 
-from hybrid_rl import config as configuration
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, one_of, read
 from hybrid_rl.errors import UsageError
-from hybrid_rl.goals import retargeted
 from hybrid_rl.run.machine.provenance import device
+from hybrid_rl.run.retarget import retargeted
+from hybrid_rl.run.saved import Trained
+from hybrid_rl.settings import build as configuration
 from hybrid_rl.tools.view.subject import quicker
-from hybrid_rl.trained import Trained
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.decider import Decider
 from hybrid_rl.types import Params

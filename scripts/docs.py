@@ -25,9 +25,10 @@ from textwrap import dedent
 
 from omegaconf import DictConfig, OmegaConf
 
-from hybrid_rl import conf_files, config
 from hybrid_rl.errors import UsageError
-from hybrid_rl.parts import targets
+from hybrid_rl.files.targets import targets
+from hybrid_rl.settings import build as config
+from hybrid_rl.settings import groups as conf_files
 from scripts.browser import robots
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -13,8 +13,8 @@ from time import perf_counter
 import jax
 import jax.numpy as jnp
 
-from hybrid_rl import config
 from hybrid_rl.run.machine.jax_settings import prepare
+from hybrid_rl.settings import build as config
 from hybrid_rl.types import EnvState
 
 

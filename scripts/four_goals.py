@@ -16,10 +16,10 @@ from hybrid_rl.analysis.drawing import frames
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, output, read, whole
 from hybrid_rl.envs.mujoco.scenery import scene_of
-from hybrid_rl.goals import retargeted
 from hybrid_rl.render import episode
-from hybrid_rl.trained import Trained
-from hybrid_rl.trained import read as policy
+from hybrid_rl.run.retarget import retargeted
+from hybrid_rl.run.saved import Trained
+from hybrid_rl.run.saved import read as policy
 
 GOALS = {
     "goal: 2 m/s": ["reward=speed", "reward.target=2"],

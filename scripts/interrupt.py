@@ -29,8 +29,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from omegaconf import OmegaConf
 
-from hybrid_rl import config as configuration
 from hybrid_rl.run.checkpoints import checkpoint, leaves
+from hybrid_rl.settings import build as configuration
 from hybrid_rl.training.loop import Loop
 
 EARLY = 0.2  # share of the faults that come before the run trains, perhaps

@@ -95,7 +95,7 @@ MUTANTS = {
         "tests/run",
     ),
     "a misspelt override is ignored": Mutant(
-        "hybrid_rl/config.py",
+        "hybrid_rl/settings/build.py",
         "if all(path in each for each in lost):",
         "if False:",
         "tests/cli tests/test_errors.py",
@@ -125,7 +125,7 @@ MUTANTS = {
         "tests/training/test_host_loop.py",
     ),
     "a broken-off episode leaves its plan": Mutant(
-        "hybrid_rl/online.py",
+        "hybrid_rl/outside/online.py",
         "self._pending, self._first = None, True\n        self._decide.begin()",
         "self._pending, self._first = None, True",
         "tests/test_online.py",

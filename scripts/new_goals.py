@@ -23,13 +23,13 @@ from hybrid_rl.cli.arguments import Argument, read, whole
 from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.controllers.sampling import SamplingController
 from hybrid_rl.errors import UsageError
-from hybrid_rl.goals import aimed, by_learner, retargeted
 from hybrid_rl.proposals.knots import KnotsProposal
 from hybrid_rl.proposals.mixture import MixtureProposal
 from hybrid_rl.proposals.noise import NoiseProposal
 from hybrid_rl.proposals.policy import PolicyProposal
+from hybrid_rl.run.retarget import aimed, by_learner, retargeted
+from hybrid_rl.run.saved import Trained, load
 from hybrid_rl.tools.view.subject import replace_part
-from hybrid_rl.trained import Trained, load
 from hybrid_rl.training.rollout import advance, begin, scores
 from hybrid_rl.types import Params
 from scripts.seeds import Row, every, split_names, write

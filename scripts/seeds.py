@@ -11,7 +11,7 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.run.machine.provenance import device
-from hybrid_rl.trained import Trained
+from hybrid_rl.run.saved import Trained
 from hybrid_rl.training.rollout import evaluation_keys
 
 Row = tuple[str, Mapping[str, Any]]  # who acts, and what it gave: name -> [S]

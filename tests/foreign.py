@@ -10,9 +10,9 @@ import pytest
 import yaml
 from tiny import SMALL, contents
 
-from hybrid_rl import config
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import folder as run_folder
+from hybrid_rl.settings import build as config
 
 METRIC = "metric=eval/return"
 ROW = {"step": 5, "seed": 0, "wall_s": 1.0, "eval/return": -3.0}

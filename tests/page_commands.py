@@ -16,9 +16,9 @@ from omegaconf import DictConfig
 
 from hybrid_rl import figures
 from hybrid_rl.cli.arguments import HELP, Argument
-from hybrid_rl.config import CONF
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import together
+from hybrid_rl.settings.build import CONF
 
 ROOT = Path(__file__).resolve().parents[1]
 LIBRARY = [  # pages; those of the atlas are copied from other pages

@@ -16,14 +16,15 @@ import pytest
 from omegaconf import OmegaConf
 from tiny import TINY, call, call_train, contents, rows_of, run, summary_of
 
-from hybrid_rl import config, evaluate, figures, render
+from hybrid_rl import evaluate, figures, render
 from hybrid_rl.analysis.curves import curves
 from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.envs.mujoco.native import cores
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.checkpoints import checkpoint
-from hybrid_rl.trained import build_run, load, restore
+from hybrid_rl.run.saved import build_run, load, restore
+from hybrid_rl.settings import build as config
 from hybrid_rl.training.rollout import evaluation_keys
 
 MODES = {"full": "eval/return", "policy": "eval/policy_return", "planner": "eval/planner_return"}

@@ -13,9 +13,10 @@ from hydra.utils import get_class, instantiate
 from omegaconf import DictConfig, OmegaConf
 from tiny import SMALL
 
-from hybrid_rl import config, parts
-from hybrid_rl.conf_files import file, options
 from hybrid_rl.controllers.gradient import GradientController
+from hybrid_rl.files import targets as parts
+from hybrid_rl.settings import build as config
+from hybrid_rl.settings.groups import file, options
 
 PARTS = [
     path

@@ -9,7 +9,7 @@ import pytest
 from tiny import TINY, call, call_train, only_line, run
 from tiny import demonstrate as recorded
 
-from hybrid_rl import config, demonstrate, evaluate, train
+from hybrid_rl import demonstrate, evaluate, train
 from hybrid_rl.analysis import held_out
 from hybrid_rl.cli import command
 from hybrid_rl.constraints.effort import Effort
@@ -17,7 +17,8 @@ from hybrid_rl.data.demonstrations import load
 from hybrid_rl.envs.adapters.unstepped import Unstepped
 from hybrid_rl.envs.experts.push import PushController
 from hybrid_rl.envs.sawyer_push import SawyerPush
-from hybrid_rl.trained import load as load_run
+from hybrid_rl.run.saved import load as load_run
+from hybrid_rl.settings import build as config
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Params
 

@@ -12,10 +12,10 @@ from tiny import contents
 
 from hybrid_rl.data import handover
 from hybrid_rl.data.row_log import RowLog
-from hybrid_rl.drafts import open_own, own_folder, refuse_link, replacing
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.adapters.stand_in import Cartpole
 from hybrid_rl.errors import CheckpointError, UsageError
+from hybrid_rl.files.atomic import open_own, own_folder, refuse_link, replacing
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.files.lock import lock
 from hybrid_rl.run.logs.log import RunLog

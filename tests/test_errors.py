@@ -7,10 +7,11 @@ import pytest
 from omegaconf import OmegaConf
 from tiny import call, call_train, contents, only_line
 
-from hybrid_rl import config, overrides
-from hybrid_rl.checks import COUNTS
 from hybrid_rl.cli import command
 from hybrid_rl.errors import UsageError
+from hybrid_rl.settings import build as config
+from hybrid_rl.settings import words as overrides
+from hybrid_rl.settings.values import COUNTS
 
 pytestmark = pytest.mark.turns(3)
 

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from tiny import call, only_line
 
-from hybrid_rl import export, exported
+from hybrid_rl import export
 from hybrid_rl.cli import command
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.controllers.sampling import SamplingController
@@ -31,7 +31,8 @@ from hybrid_rl.policies.tanh_gaussian import TanhGaussian
 from hybrid_rl.policies.unit_gaussian import UnitGaussian
 from hybrid_rl.proposals.policy import PolicyProposal
 from hybrid_rl.rewards.known import KnownReward
-from hybrid_rl.trained import Trained
+from hybrid_rl.run import exported
+from hybrid_rl.run.saved import Trained
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Params
 
@@ -85,7 +86,7 @@ def trained(learned, monkeypatch):
     """A run of them."""
     modes = {"policy": PolicyController(POLICY, explore=False), "full": PLANNER.greedy()}
     run = Trained("pendulum", Episode(Pendulum()), modes, learned, (3, 4), 7000, ())
-    monkeypatch.setattr("hybrid_rl.trained.load", lambda folder: run)
+    monkeypatch.setattr("hybrid_rl.run.saved.load", lambda folder: run)
     return run
 
 

@@ -7,7 +7,6 @@ from typing import Annotated, Literal
 import numpy as np
 import pytest
 
-from hybrid_rl import config
 from hybrid_rl.fields import (
     FILLED,
     Count,
@@ -20,6 +19,7 @@ from hybrid_rl.fields import (
     part,
 )
 from hybrid_rl.protocols import Objective
+from hybrid_rl.settings import build as config
 
 
 @part

@@ -9,27 +9,19 @@ import pytest
 from foreign import changed, made, refused
 from tiny import call, call_train, contents, only_line
 
-from hybrid_rl import (
-    OnlineLearner,
-    __version__,
-    config,
-    demonstrate,
-    evaluate,
-    export,
-    parts,
-    render,
-    robot,
-)
+from hybrid_rl import OnlineLearner, __version__, demonstrate, evaluate, export, render, robot
 from hybrid_rl.cli import command
 from hybrid_rl.data import archive
 from hybrid_rl.data import trained as saved
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import UsageError
+from hybrid_rl.files import targets as parts
 from hybrid_rl.run import folder as run_folder
+from hybrid_rl.run.saved import read
+from hybrid_rl.settings import build as config
 from hybrid_rl.tools.doctor import __main__ as doctor
 from hybrid_rl.tools.view import __main__ as view
-from hybrid_rl.trained import read
 
 EXTERNAL = {"_target_": "hybrid_rl.envs.adapters.external.External"}
 ROBOT = {"_target_": "hybrid_rl.envs.adapters.robot.Robot"}
@@ -68,7 +60,11 @@ NAMES = [
     *("gymnasium.envs.registration:load_env_creator", "gymnasium.utils.play:play"),
     *("hybrid_rl.robot:main", "hybrid_rl.data.row_log:RowLog", "hybrid_rl.data.trained:save"),
     *("hybrid_rl.training.robot_process:RobotProcess", "hybrid_rl.envs.adapters.gymnasium:make"),
-    *("hybrid_rl.envs.adapters.external:gymnasium", "hybrid_rl.parts:imported", "hybrid_rl:train"),
+    *(
+        "hybrid_rl.envs.adapters.external:gymnasium",
+        "hybrid_rl.files.targets:imported",
+        "hybrid_rl:train",
+    ),
     *("scripts.bootstrap:main", "tests.tiny:call", "envs.gym:_register", "thesis.conftest:x"),
     *("theirs.run.zz_evil:World", "theirs.zz_evil:World", "theirs:zz_evil"),
     *("zz_mine:system", "zz_mine:hidden", "zz_mine:run", "zz_mine:loads", "zz_mine:check_output"),

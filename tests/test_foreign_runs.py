@@ -6,12 +6,13 @@ import pytest
 from foreign import METRIC, changed, made, refused
 from tiny import call, call_train, contents, only_line
 
-from hybrid_rl import config, demonstrate, evaluate, export, figures, render
+from hybrid_rl import demonstrate, evaluate, export, figures, render
 from hybrid_rl.analysis import recorded
 from hybrid_rl.cli import command
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.machine import jax_settings
+from hybrid_rl.settings import build as config
 from hybrid_rl.tools.report import __main__ as report
 
 SYSTEM = {"_target_": "os.system", "command": "true"}
@@ -59,8 +60,8 @@ def test_a_section_that_holds_no_part_is_refused(folder, keys, words):
         *("antigravity.webbrowser", "yaml.unsafe_load", "__main__.x", "site.main", "pytest.main"),
         "hybrid_rl.run.files.integrity.write_text",
         "hybrid_rl.analysis.results.RunFolder",
-        "hybrid_rl.config.Path",
-        "hybrid_rl.config.Run",
+        "hybrid_rl.settings.build.Path",
+        "hybrid_rl.settings.build.Run",
         "hybrid_rl.types.Spec",
         "hybrid_rl.data.trained.Path",
         "hybrid_rl.data.trained.save",

@@ -14,9 +14,9 @@ from hybrid_rl.cli import command
 from hybrid_rl.controllers.gradient import GradientController
 from hybrid_rl.controllers.sampling import SamplingController
 from hybrid_rl.errors import UsageError
-from hybrid_rl.goals import aimed, retargeted
 from hybrid_rl.rewards.network import RewardNetwork
-from hybrid_rl.trained import Trained, load, read
+from hybrid_rl.run.retarget import aimed, retargeted
+from hybrid_rl.run.saved import Trained, load, read
 from scripts import new_goals
 
 pytestmark = pytest.mark.turns(3)
@@ -251,7 +251,7 @@ def test_a_return_that_is_not_finite_is_one_line_and_no_file(
     ],
 )
 def test_a_mistake_is_one_line(trained: Path, known: Trained, words, line, capfd, monkeypatch):
-    monkeypatch.setattr("hybrid_rl.trained.load", lambda folder: known)
+    monkeypatch.setattr("hybrid_rl.run.saved.load", lambda folder: known)
     given = f"run={trained}", *words.split()
     assert call(lambda: command.run(evaluate.main), *given) == 2
     assert line in only_line(capfd)

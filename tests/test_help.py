@@ -12,9 +12,9 @@ from tiny import call, call_train
 from hybrid_rl import __main__ as commands
 from hybrid_rl.cli import arguments, command
 from hybrid_rl.cli.arguments import Argument, number, one_of, several, whole
-from hybrid_rl.config import CONF
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.machine.jax_settings import cache_folder
+from hybrid_rl.settings.build import CONF
 
 NAMES = sorted(set(commands.commands()) - {"train"})
 

@@ -1,15 +1,15 @@
-"""Which layers import which, the size of files, and the bugs that scripts/mutants.py plants.
+"""Which rooms import which, the size of files, and the bugs that scripts/mutants.py plants.
 
-types, errors, drafts, fields, modules, parts
+types, errors, version, fields, files
       ^
 core, networks
       ^
-models controllers ... data <- training <- config <- run <- trained <- analysis <- commands
-                                                      cli              <- thesis
+models controllers ... data <- training <- settings <- run <- outside, analysis <- commands
+                                                       cli              <- thesis
 parts never import each other: YAML files combine them; some read files by data/archive
 a part may be a folder, whose files import each other
 
-envs -> types, fields, protocols, errors, parts.py
+envs -> types, fields, protocols, errors, files
 tools stand outside: nothing imports them, and they import what is public (tests/test_public.py)
 """
 
@@ -26,61 +26,37 @@ from scripts.mutants import MUTANTS
 ROOT = Path(__file__).resolve().parents[1]
 PATTERNS = ("hybrid_rl/**/*.py", "envs/**/*.py", "thesis/*.py", "thesis/studies/*.py")
 FILES = sorted(file for pattern in PATTERNS for file in ROOT.glob(pattern))
-LAYER_FILES = {
-    "types",
-    "drafts",
-    "errors",
-    "fields",
-    "checks",
-    "composition",
-    "conf_files",
-    "config",
-    "overrides",
-}
-LAYER_FILES |= {"modules", "overrides", "parts", "trained"}
+LAYER_FILES = {"types", "errors", "fields", "version"}
 SHARED = {"types", "fields", "protocols", "core", "networks"}
 CONFIG = {
-    *("types", "drafts", "fields", "protocols", "errors", "parts", "networks", "envs"),
-    "training",
-    *("checks", "composition", "conf_files", "config", "overrides", "settings"),
+    *("types", "fields", "protocols", "errors", "version", "files", "networks", "envs"),
+    *("training", "settings"),
 }
 ALLOWED = {
     "types": set(),
     "errors": set(),
-    "drafts": {"errors"},
+    "version": set(),
     "fields": set(),
-    "modules": {"errors"},
-    "parts": {"errors", "fields", "modules"},  # judges names, and builds what they name
+    "files": {"errors", "fields", "files"},  # judges names, and writes whole
     "protocols": {"types", "errors", "fields", "protocols"},
     "core": {"types", "fields", "protocols", "core"},
     "networks": {"types", "fields", "protocols", "core", "networks"},
-    "envs": {"types", "fields", "protocols", "errors", "parts", "envs"},
-    "training": {"errors", *SHARED, "drafts", "envs", "data", "training"},
-    "archive": {"types", "drafts", "protocols"},
-    "data": {*SHARED, "drafts", "parts", "archive"},
-    "beliefs": {*SHARED, "drafts", "archive"},
+    "envs": {"types", "fields", "protocols", "errors", "files", "envs"},
+    "training": {"errors", *SHARED, "files", "envs", "data", "training"},
+    "archive": {"types", "files", "protocols"},
+    "data": {*SHARED, "files", "archive"},
+    "beliefs": {*SHARED, "files", "archive"},
     "policies": {*SHARED, "archive"},
-    "overrides": {"errors"},
-    "settings": {"errors", "parts", "settings"},  # what a run reads, which parts there are
-    "conf_files": {"errors", "settings"},
-    "checks": {
-        *("types", "errors", "fields", "conf_files", "overrides", "parts", "networks", "envs"),
-        "settings",
-    },
-    "composition": {
-        *("errors", "fields", "conf_files", "checks", "overrides", "parts", "training"),
-        "settings",
-    },
-    "config": CONFIG,  # builds the parts that YAML names
-    "run": {*CONFIG, "run"},  # a run on the host: folder, session, checkpoints
+    "settings": CONFIG,  # from words to the parts that YAML names
+    "run": {*CONFIG, "core", "archive", "data", "controllers", "run"},  # a run on the host
     "cli": {*CONFIG, "run", "cli"},  # what the commands share
-    "trained": {*SHARED, *CONFIG, "archive", "data", "controllers", "run"},
-    "analysis": {*SHARED, *CONFIG, "data", "run", "cli", "trained", "analysis"},
+    "outside": {*SHARED, *CONFIG, "data", "run", "outside"},
+    "analysis": {*SHARED, *CONFIG, "data", "run", "cli", "analysis"},
     # as a user's project would, and nothing but the command `render` imports it
-    "thesis": {*SHARED, *CONFIG, "data", "beliefs", "run", "cli", "trained", "analysis", "thesis"},
+    "thesis": {*SHARED, *CONFIG, "data", "beliefs", "run", "cli", "analysis", "thesis"},
 }
-HYDRA = {"command", "checks", "composition", "config", "overrides", "run", "trained", "cli"}
-HYDRA |= {"analysis", "settings", "thesis", "tools"}
+HYDRA = {"command", "settings", "run", "cli", "outside", "tools"}
+HYDRA |= {"analysis", "thesis"}
 VAGUE = {"utils", "util", "common", "base", "helpers", "helper", "misc", "manager"}
 
 over_files = pytest.mark.parametrize("file", FILES, ids=lambda f: str(f.relative_to(ROOT)))

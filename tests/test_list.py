@@ -8,11 +8,11 @@ import pytest
 from omegaconf import OmegaConf
 from tiny import demonstrate
 
-from hybrid_rl import config
 from hybrid_rl import list as listed
 from hybrid_rl.cli import command
-from hybrid_rl.conf_files import CONF, file
-from hybrid_rl.parts import part_class
+from hybrid_rl.files.targets import part_class
+from hybrid_rl.settings import build as config
+from hybrid_rl.settings.groups import CONF, file
 
 HAS = {  # method of an environment -> what its task says
     "dynamics": "analytic dynamics",

@@ -11,8 +11,8 @@ import pytest
 import yaml
 from foreign import written
 
-from hybrid_rl import parts
 from hybrid_rl.errors import UsageError
+from hybrid_rl.files import targets as parts
 
 ROOT = Path(__file__).resolve().parents[1]
 EXTERNAL = {"_target_": "hybrid_rl.envs.adapters.external.External"}
@@ -47,7 +47,7 @@ def test_every_key_of_a_configuration_asks_the_rule(tmp_path):
 
 WORDS = "import_module|__import__|exec|eval|instantiate|locate|get_class|get_method|run_path"
 FOLLOWED = {  # what is imported by a name that is no constant: judged, typed, or from a table
-    "hybrid_rl/parts.py": {"module", "found[1]"},
+    "hybrid_rl/files/targets.py": {"module", "found[1]"},
     "envs/adapters/external.py": {"registered(self.id)"},
     "hybrid_rl/tools/stand_in.py": {"kind.id"},
     "envs/mujoco/offscreen.py": {"f'mujoco.{name}'"},

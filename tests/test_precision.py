@@ -13,11 +13,11 @@ from tiny import CONF, call, call_train, summary_of
 
 import hybrid_rl
 from hybrid_rl import evaluate
-from hybrid_rl.config import build
 from hybrid_rl.controllers.policy import PolicyController
-from hybrid_rl.exported import program
 from hybrid_rl.networks import MLP, normalised, precision
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
+from hybrid_rl.run.exported import program
+from hybrid_rl.settings.build import build
 from hybrid_rl.training.axis import Axis
 from hybrid_rl.types import Params, Spec
 

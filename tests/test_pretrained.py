@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from tiny import call, only_line
 
-from hybrid_rl import config, evaluate, export
+from hybrid_rl import evaluate, export
 from hybrid_rl.cli import command
 from hybrid_rl.data import archive
 from hybrid_rl.errors import UsageError
-from hybrid_rl.trained import names, read
+from hybrid_rl.run.saved import names, read
+from hybrid_rl.settings import build as config
 
 NAMES = names()
 

@@ -15,7 +15,7 @@ from hybrid_rl import render
 from hybrid_rl.analysis import drawing
 from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import offscreen
-from hybrid_rl.trained import Trained
+from hybrid_rl.run.saved import Trained
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import EnvState, Params, Spec
 
@@ -68,7 +68,7 @@ def trained(monkeypatch):
         notes=("of two learners",),
     )
     run.learner = partial(Trained.learner, run)
-    monkeypatch.setattr("hybrid_rl.goals.load_named", lambda given: run)
+    monkeypatch.setattr("hybrid_rl.run.retarget.load_named", lambda given: run)
     return run
 
 

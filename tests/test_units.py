@@ -7,11 +7,11 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from hybrid_rl import config
 from hybrid_rl.beliefs.maps.known import KnownMap
 from hybrid_rl.core import poses
 from hybrid_rl.data.replay import unpack
 from hybrid_rl.envs.analytic.contact_plane import ContactPlane
+from hybrid_rl.settings import build as config
 from hybrid_rl.training.loop import Loop
 
 pytestmark = pytest.mark.turns(4)

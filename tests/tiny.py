@@ -12,10 +12,11 @@ from hydra.utils import instantiate
 from omegaconf import DictConfig
 from programs import shared
 
-from hybrid_rl import config, train
+from hybrid_rl import train
 from hybrid_rl.cli import hydra_line
-from hybrid_rl.conf_files import search_path
 from hybrid_rl.data.demonstrations import save
+from hybrid_rl.settings import build as config
+from hybrid_rl.settings.groups import search_path
 from hybrid_rl.types import Transition
 
 CONF = search_path(Path(__file__).parent / "conf")

@@ -33,7 +33,7 @@ from hybrid_rl.envs.adapters.packed import Packed, pack, unpack
 from hybrid_rl.envs.gym import time_limit
 from hybrid_rl.envs.mujoco.offscreen import Canvas
 from hybrid_rl.envs.mujoco.scenery import pose_of, scene_of
-from hybrid_rl.parts import part_class
+from hybrid_rl.files.targets import part_class
 from hybrid_rl.protocols import Env
 from hybrid_rl.types import EnvState
 

@@ -8,8 +8,8 @@ from typing import Any, NoReturn
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl import parts
 from hybrid_rl.errors import FAULTS, UsageError, user_line
+from hybrid_rl.files import targets as parts
 from hybrid_rl.types import EnvState, Spec
 
 ALONE = "steps by itself; no method can plan on it, and evaluate and render cannot step it "

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.drafts import replacing
 from hybrid_rl.envs.mujoco.offscreen import Canvas
+from hybrid_rl.files.atomic import replacing
 from hybrid_rl.run.logs.progress import Progress
 
 SUFFIXES = (".mp4", ".gif", ".png")

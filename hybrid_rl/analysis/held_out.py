@@ -24,7 +24,7 @@ from hybrid_rl.analysis.results import find
 from hybrid_rl.analysis.style import blank, words
 from hybrid_rl.cli.arguments import whole
 from hybrid_rl.errors import UsageError
-from hybrid_rl.trained import Trained, load
+from hybrid_rl.run.saved import Trained, load
 from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import Params, Spec
 

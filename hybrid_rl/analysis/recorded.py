@@ -7,11 +7,11 @@ import jax
 import numpy as np
 
 from hybrid_rl.analysis.results import RunFolder, differences, short
-from hybrid_rl.config import Run
 from hybrid_rl.data.replay import unpack
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.folder import parse_config
-from hybrid_rl.trained import build_run, restore
+from hybrid_rl.run.saved import build_run, restore
+from hybrid_rl.settings.build import Run
 
 
 class Recorded(NamedTuple):

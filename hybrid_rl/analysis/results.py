@@ -15,11 +15,11 @@ from typing import Any
 
 import yaml
 
-from hybrid_rl.checks import SECTIONS
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.files.reading import Loader, lines, yaml_file
 from hybrid_rl.run.logs.records import COORDINATES, WORD, flatten_keys, row_of, summary_of
 from hybrid_rl.settings.complete import nearest
+from hybrid_rl.settings.values import SECTIONS
 
 NOT_METRICS = (*COORDINATES, WORD)  # of a row; every other name is a metric
 # Keys in which runs of the same settings may differ: which learners they hold, how long they run,

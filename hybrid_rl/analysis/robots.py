@@ -18,7 +18,7 @@ from hybrid_rl.data.row_log import row_type
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import folder as run_folder
-from hybrid_rl.trained import build_run
+from hybrid_rl.run.saved import build_run
 
 BIN = 0.5  # [min]
 QUANTILES = {"median": 0.5, "99%": 0.99, "greatest": 1.0}

@@ -9,9 +9,9 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any
 
-from hybrid_rl.conf_files import MODES
 from hybrid_rl.errors import UsageError
 from hybrid_rl.settings.complete import nearest
+from hybrid_rl.settings.groups import MODES
 
 Kind = Callable[[str, str], Any]  # (name, text) -> value
 HELP = ("--help", "-h")

@@ -44,8 +44,8 @@ def diagnosis(error: BaseException) -> tuple[int, str] | None:
     """Exit code and line for what went wrong; None for a fault of ours."""
     if isinstance(error, UsageError):
         return 2, str(error)
-    from hybrid_rl.composition import UNCOMPOSED, explain
     from hybrid_rl.fields import FieldError
+    from hybrid_rl.settings.compose import UNCOMPOSED, explain
 
     if isinstance(error, FieldError):  # while a program is traced
         return 2, str(error)

@@ -13,13 +13,13 @@ from hydra.core.hydra_config import HydraConfig
 from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf, open_dict
 
-from hybrid_rl import config as configuration
-from hybrid_rl import overrides
 from hybrid_rl.cli import arguments, command
-from hybrid_rl.composition import check_choices
-from hybrid_rl.conf_files import CONF, groups, search_path
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import inherited
+from hybrid_rl.settings import build as configuration
+from hybrid_rl.settings import words as overrides
+from hybrid_rl.settings.compose import check_choices
+from hybrid_rl.settings.groups import CONF, groups, search_path
 
 FLAGS = {  # of Hydra -> how many words follow
     **dict.fromkeys(("-m", "--multirun", "-r", "--run", "--resolve", "--version"), 0),

@@ -10,8 +10,8 @@ from typing import Any
 from hydra.core.singleton import Singleton
 
 from hybrid_rl.cli import interrupt
-from hybrid_rl.composition import SLURM
 from hybrid_rl.errors import UsageError, relative
+from hybrid_rl.settings.compose import SLURM
 
 Result = dict[str, Any]  # of a job: code, line
 POLL = 0.5  # [s] between two checks of the jobs

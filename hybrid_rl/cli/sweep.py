@@ -21,15 +21,10 @@ from hydra.errors import HydraException
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
-from hybrid_rl import config as configuration
-from hybrid_rl import overrides as words
-from hybrid_rl.checks import check
 from hybrid_rl.cli import command, hydra_line
 from hybrid_rl.cli.combinations import jobs_of, labels
 from hybrid_rl.cli.submitted import Result, launch, require_slurm
-from hybrid_rl.composition import concerns, explain
 from hybrid_rl.errors import UsageError
-from hybrid_rl.overrides import forced, of_job, parse, quoted, raw_values, typed
 from hybrid_rl.run import together
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.files.integrity import write_text
@@ -37,7 +32,12 @@ from hybrid_rl.run.folder import NO_CHECKPOINT, members, new_folder, rowless
 from hybrid_rl.run.machine import distributed
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.run.start import build_new_run
+from hybrid_rl.settings import build as configuration
+from hybrid_rl.settings import words
 from hybrid_rl.settings.complete import refusal
+from hybrid_rl.settings.compose import concerns, explain
+from hybrid_rl.settings.values import check
+from hybrid_rl.settings.words import forced, of_job, parse, quoted, raw_values, typed
 
 ACCELERATED = ("auto", "mjx", "warp")  # physics that may need a GPU to build a world
 

@@ -19,7 +19,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from hybrid_rl.drafts import replacing
+from hybrid_rl.files.atomic import replacing
 from hybrid_rl.protocols import Env
 from hybrid_rl.types import NAME, PyTree, Spec
 

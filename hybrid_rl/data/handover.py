@@ -8,7 +8,7 @@ from typing import Any
 import jax
 import numpy as np
 
-from hybrid_rl.drafts import open_own
+from hybrid_rl.files.atomic import open_own
 
 HEAD = np.dtype([("version", "<i8"), ("check", "<u4"), ("size", "<u8")])
 

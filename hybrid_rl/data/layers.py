@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from hybrid_rl.data import archive
-from hybrid_rl.drafts import replacing
+from hybrid_rl.files.atomic import replacing
 from hybrid_rl.networks import Perceptron
 from hybrid_rl.types import Spec
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hybrid_rl.drafts import own_file
+from hybrid_rl.files.atomic import own_file
 from hybrid_rl.types import Spec
 
 

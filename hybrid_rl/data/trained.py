@@ -15,8 +15,8 @@ import jax
 import numpy as np
 from jax import Array
 
-from hybrid_rl import parts
 from hybrid_rl.data import archive
+from hybrid_rl.files import targets as parts
 from hybrid_rl.protocols import Env
 from hybrid_rl.types import PyTree, Spec
 

@@ -12,13 +12,13 @@ from typing import Any
 
 from omegaconf import OmegaConf
 
-from hybrid_rl.checks import SECTIONS, whole
-from hybrid_rl.conf_files import CONF
-from hybrid_rl.config import Run
 from hybrid_rl.envs.adapters.external import check_world
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.machine.jax_settings import prepare
+from hybrid_rl.settings.build import Run
+from hybrid_rl.settings.groups import CONF
+from hybrid_rl.settings.values import SECTIONS, whole
 from hybrid_rl.training.agent import Agent
 
 DEFAULTS = ("compile_cache", "precision")  # those of conf/train.yaml

@@ -20,17 +20,18 @@ from typing import Any
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import ConfigAttributeError, ConfigKeyError, OmegaConfBaseException
 
-from hybrid_rl import __version__, parts
-from hybrid_rl.checks import COUNTS, SECTIONS, check_words
-from hybrid_rl.config import CONF
 from hybrid_rl.errors import MisfitError, PartError, UsageError, printable
-from hybrid_rl.overrides import quoted
+from hybrid_rl.files import targets as parts
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.files.anchors import as_yaml
 from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.files.lock import lock
 from hybrid_rl.run.files.reading import json_file, yaml_file
 from hybrid_rl.run.machine.provenance import git_commit
+from hybrid_rl.settings.build import CONF
+from hybrid_rl.settings.values import COUNTS, SECTIONS, check_words
+from hybrid_rl.settings.words import quoted
+from hybrid_rl.version import __version__
 
 FIRST = "0.2"  # version that writes its number to config.yaml
 SWEEP = "sweep.json"  # in the folder of runs that one program trains (hybrid_rl.run.together)
@@ -245,7 +246,7 @@ def words(values: Mapping[str, float]) -> str:
 def parse_config(folder: Path, key: str = "runs") -> DictConfig:
     """What config.yaml of the run in `folder` holds, which the argument `key` named.
 
-    It may come from anybody: it has plain values only, names parts only (hybrid_rl.parts), and
+    It may come from anybody: it has plain values only, names parts only (files.targets), and
     compiled programs are kept where this machine keeps them.
     """
     path = folder / "config.yaml"

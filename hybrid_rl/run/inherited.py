@@ -11,12 +11,13 @@ from typing import Any
 
 from omegaconf import DictConfig, OmegaConf
 
-from hybrid_rl import config as configuration
-from hybrid_rl import overrides, parts
-from hybrid_rl.conf_files import search_path
 from hybrid_rl.errors import UsageError
-from hybrid_rl.overrides import name
+from hybrid_rl.files import targets as parts
 from hybrid_rl.run import folder
+from hybrid_rl.settings import build as configuration
+from hybrid_rl.settings import words as overrides
+from hybrid_rl.settings.groups import search_path
+from hybrid_rl.settings.words import name
 
 CHOSEN = ("task", "algo", "learning")  # they make the parameters
 WIDE = ("settings", "experiment")  # they would set what DIR has set

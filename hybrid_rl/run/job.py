@@ -8,9 +8,7 @@ from typing import Any, Self
 
 from omegaconf import DictConfig, OmegaConf
 
-from hybrid_rl import config as configuration
-from hybrid_rl.config import Run
-from hybrid_rl.drafts import naming, refuse_link
+from hybrid_rl.files.atomic import naming, refuse_link
 from hybrid_rl.networks import precision
 from hybrid_rl.run.checkpoints.store import Store
 from hybrid_rl.run.logs import loggers
@@ -19,6 +17,8 @@ from hybrid_rl.run.logs.records import Row, flatten_keys
 from hybrid_rl.run.machine import provenance
 from hybrid_rl.run.session import Session
 from hybrid_rl.run.shelf import Shelf
+from hybrid_rl.settings import build as configuration
+from hybrid_rl.settings.build import Run
 from hybrid_rl.training.axis import Axis
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.training.loops import loop_of

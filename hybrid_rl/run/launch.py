@@ -9,11 +9,8 @@ from typing import Any
 
 from omegaconf import DictConfig, OmegaConf
 
-from hybrid_rl import config as configuration
-from hybrid_rl.checks import check, countable, one_of, whole
-from hybrid_rl.config import Run
-from hybrid_rl.drafts import refuse_link
 from hybrid_rl.errors import FAULTS, DivergenceError, UsageError
+from hybrid_rl.files.atomic import refuse_link
 from hybrid_rl.networks import precision
 from hybrid_rl.run import folder, together
 from hybrid_rl.run import start as starting
@@ -30,6 +27,9 @@ from hybrid_rl.run.schedule import Schedule
 from hybrid_rl.run.session import Session
 from hybrid_rl.run.start import Start
 from hybrid_rl.run.together import Member
+from hybrid_rl.settings import build as configuration
+from hybrid_rl.settings.build import Run
+from hybrid_rl.settings.values import check, countable, one_of, whole
 
 NOTHING: Mapping[str, str] = MappingProxyType({})
 UNKNOWN = object()  # the value of a key that a configuration does not have

@@ -14,13 +14,13 @@ import jax
 import jax.numpy as jnp
 from omegaconf import DictConfig, OmegaConf, open_dict
 
-from hybrid_rl import config as configuration
-from hybrid_rl.config import Run
 from hybrid_rl.errors import MisfitError, UsageError
 from hybrid_rl.run import folder
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.checkpoints.store import read_part, with_capacity
 from hybrid_rl.run.logs.records import changes, flatten_keys
+from hybrid_rl.settings import build as configuration
+from hybrid_rl.settings.build import Run
 from hybrid_rl.training.agent import Agent, AgentState
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import forgotten

@@ -19,17 +19,17 @@ import jax
 import jax.numpy as jnp
 from omegaconf import DictConfig, OmegaConf, open_dict
 
-from hybrid_rl import config as configuration
-from hybrid_rl import overrides
-from hybrid_rl.config import Run
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.errors import UsageError
-from hybrid_rl.overrides import raw_values
 from hybrid_rl.run import folder, inherited
 from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.folder import SWEEP
 from hybrid_rl.run.logs.records import flatten_keys
+from hybrid_rl.settings import build as configuration
+from hybrid_rl.settings import words as overrides
+from hybrid_rl.settings.build import Run
 from hybrid_rl.settings.complete import LACKING, refusal, select, source
+from hybrid_rl.settings.words import raw_values
 from hybrid_rl.training.axis import Axis, DifferError
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.training.loops import loop_of

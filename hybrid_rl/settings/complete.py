@@ -13,7 +13,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
 from hybrid_rl.errors import UsageError
-from hybrid_rl.parts import OURS, TARGET, part_class
+from hybrid_rl.files.targets import OURS, TARGET, part_class
 
 REFERENCE = re.compile(r"\$\{([\w.@]+)\}")  # an interpolation, which names a key
 INNER = re.compile(r"(?<=[\w.])\$\{([\w.]+)\}")  # within another one

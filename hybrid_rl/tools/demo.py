@@ -51,8 +51,8 @@ def installed() -> str:
     """Lines about this machine and this installation."""
     import jax
 
-    from hybrid_rl.conf_files import options
-    from hybrid_rl.trained import names
+    from hybrid_rl.run.saved import names
+    from hybrid_rl.settings.groups import options
 
     device = jax.devices()[0]
     extras = [name for name, module in EXTRAS.items() if find_spec(module)]
@@ -80,7 +80,7 @@ def film(policy: str, out: Path) -> str:
     from hybrid_rl.analysis.drawing import SUFFIXES
     from hybrid_rl.envs.mujoco import offscreen
     from hybrid_rl.render import draw_film, episode
-    from hybrid_rl.trained import read as read_policy
+    from hybrid_rl.run.saved import read as read_policy
 
     arguments.output("out", out, SUFFIXES)
     trained = read_policy(policy)

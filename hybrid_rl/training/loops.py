@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from hybrid_rl.drafts import own_folder
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.adapters.robot import Outside, Robot
 from hybrid_rl.errors import UsageError
+from hybrid_rl.files.atomic import own_folder
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.axis import Axis
 from hybrid_rl.training.host_loop import HostLoop

@@ -8,9 +8,9 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
-from hybrid_rl.drafts import open_own
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import UsageError, WorldError
+from hybrid_rl.files.atomic import open_own
 
 TRIES = 5  # starts of the process in a row without a new decision
 LOWER = 10  # priority of the learner

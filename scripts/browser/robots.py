@@ -24,10 +24,10 @@ import jax
 import numpy as np
 from jax import Array
 
-from hybrid_rl import trained
 from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.exported import layers
 from hybrid_rl.networks import Perceptron
+from hybrid_rl.run import saved as trained
+from hybrid_rl.run.exported import layers
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import EnvState
 from scripts.browser.javascript import Program

@@ -6,8 +6,9 @@ from copy import deepcopy
 import pytest
 from omegaconf import OmegaConf
 
-from hybrid_rl import config, overrides
+from hybrid_rl.settings import build as config
 from hybrid_rl.settings import complete
+from hybrid_rl.settings import words as overrides
 
 RAW = {
     "steps": 3,

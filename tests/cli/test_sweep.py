@@ -15,7 +15,8 @@ from hydra._internal.core_plugins import basic_sweeper
 from hydra.errors import MissingConfigException
 from tiny import CONF, TINY, call_train, summary_of
 
-from hybrid_rl import composition, train
+from hybrid_rl import train
+from hybrid_rl.settings import compose as composition
 
 pytestmark = pytest.mark.turns(3)
 

@@ -11,7 +11,7 @@ import small
 from omegaconf import OmegaConf
 from tiny import call, call_train, only_line, run
 
-from hybrid_rl import config, evaluate
+from hybrid_rl import evaluate
 from hybrid_rl.cli import command
 from hybrid_rl.constraints.effort import Effort
 from hybrid_rl.constraints.limit import Limit
@@ -19,9 +19,10 @@ from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.data.replay import Replay
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.errors import UsageError
-from hybrid_rl.goals import retargeted
+from hybrid_rl.run.retarget import retargeted
+from hybrid_rl.run.saved import load
 from hybrid_rl.run.start import _rewritten
-from hybrid_rl.trained import load
+from hybrid_rl.settings import build as config
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loops import loop_of
 from hybrid_rl.training.rollout import evaluate_episodes, rollout

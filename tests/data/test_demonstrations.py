@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 import small
 
-from hybrid_rl import config
 from hybrid_rl.data.demonstrations import COLUMNS, Demonstrations, load, save
 from hybrid_rl.data.replay import Replay, unpack
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.errors import UsageError
+from hybrid_rl.settings import build as config
 from hybrid_rl.types import Transition
 
 LENGTHS = (4, 5, 3)  # of the episodes

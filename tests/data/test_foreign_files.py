@@ -14,11 +14,13 @@ import pytest
 from foreign import no_plain_file
 from tiny import call, only_line
 
-from hybrid_rl import evaluate, export, exported, trained
+from hybrid_rl import evaluate, export
 from hybrid_rl.beliefs.maps import learned
 from hybrid_rl.cli import command
 from hybrid_rl.data import archive, demonstrations, layers
 from hybrid_rl.errors import UsageError
+from hybrid_rl.run import exported
+from hybrid_rl.run import saved as trained
 from hybrid_rl.types import Spec, Transition
 
 WEIGHTS = "policy/trunk/params/Dense_0/kernel"

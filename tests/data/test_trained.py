@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from tiny import call, only_line, run
 
-from hybrid_rl import config, demonstrate
+from hybrid_rl import demonstrate
 from hybrid_rl.cli import command
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.data.trained import SavedPolicy, save
@@ -18,7 +18,8 @@ from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.analytic.point_mass import PointMass
 from hybrid_rl.policies.deterministic import Deterministic
 from hybrid_rl.policies.tanh_gaussian import StartedGaussian, TanhGaussian
-from hybrid_rl.trained import load, read
+from hybrid_rl.run.saved import load, read
+from hybrid_rl.settings import build as config
 from hybrid_rl.types import Params
 
 POLICY = TanhGaussian((8, 4), "sin", normalise=True)

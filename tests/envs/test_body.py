@@ -21,11 +21,12 @@ from worlds import (
     rollout,
 )
 
-from hybrid_rl import config, evaluate
+from hybrid_rl import evaluate
 from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.body import Body
 from hybrid_rl.envs.mujoco.physics import Physics
+from hybrid_rl.settings import build as config
 
 ROBOTS = tuple(task for task, kind in TASKS.items() if issubclass(kind, Body))
 DERIVED = ("body_subtreemass", "body_invweight0", "dof_invweight0", "dof_M0", "actuator_acc0")

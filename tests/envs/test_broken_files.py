@@ -3,7 +3,7 @@
 import pytest
 from faulty import TASK, WORLD, changed, refused, write
 
-from hybrid_rl import config
+from hybrid_rl.settings import build as config
 
 GYMNASIUM = """import gymnasium
 

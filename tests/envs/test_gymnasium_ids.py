@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from test_adapters import play
 
-from hybrid_rl import config
 from hybrid_rl.envs import gym
 from hybrid_rl.envs.adapters.gymnasium import GymnasiumEnv, GymnasiumVectorEnv
 from hybrid_rl.envs.analytic.two_link import TwoLink
+from hybrid_rl.settings import build as config
 
 pytestmark = pytest.mark.turns(2)
 

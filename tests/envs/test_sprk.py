@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from hydra.utils import instantiate
 
-from hybrid_rl import config
 from hybrid_rl.envs.analytic.contact_plane import ContactPlane
 from hybrid_rl.envs.analytic.point_mass import PointMass
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.sprk import TIMESTEP, Sprk
+from hybrid_rl.settings import build as config
 
 pytestmark = pytest.mark.turns(3)
 

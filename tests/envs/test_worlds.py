@@ -25,8 +25,8 @@ from worlds import (
     task_of,
 )
 
-from hybrid_rl.conf_files import options
 from hybrid_rl.envs.mujoco import mjcf, scenery
+from hybrid_rl.settings.groups import options
 
 pytestmark = pytest.mark.xdist_group("worlds")  # both read `rollout`
 

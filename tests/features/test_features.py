@@ -5,10 +5,10 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from hybrid_rl import config
 from hybrid_rl.errors import UsageError
 from hybrid_rl.features.monomials import Monomials
 from hybrid_rl.features.network import Network
+from hybrid_rl.settings import build as config
 from hybrid_rl.types import Spec
 
 SPEC = Spec(obs=4, act=1, dt=0.1)

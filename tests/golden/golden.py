@@ -30,9 +30,9 @@ from omegaconf.errors import OmegaConfBaseException  # noqa: E402
 from tiny import demonstrate  # noqa: E402
 
 import conftest  # noqa: E402, F401  # the same flags of XLA as in the tests
-from hybrid_rl import config  # noqa: E402
-from hybrid_rl.conf_files import options  # noqa: E402
 from hybrid_rl.errors import UsageError  # noqa: E402
+from hybrid_rl.settings import build as config  # noqa: E402
+from hybrid_rl.settings.groups import options  # noqa: E402
 from hybrid_rl.training.loop import Loop  # noqa: E402
 
 DECISIONS = 48

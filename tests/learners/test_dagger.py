@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from tiny import call_train, only_line
 
-from hybrid_rl import config
 from hybrid_rl.core.labels import Queried
 from hybrid_rl.learners.dagger import DAgger, DAggerState
 from hybrid_rl.models.exact import Exact
 from hybrid_rl.policies.deterministic import Deterministic
+from hybrid_rl.settings import build as config
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Batch, Params, Spec
 

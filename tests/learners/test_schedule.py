@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from small import load
 
-from hybrid_rl.config import build
 from hybrid_rl.schedules.linear import LinearDecay
+from hybrid_rl.settings.build import build
 
 pytestmark = pytest.mark.turns(3)
 

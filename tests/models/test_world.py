@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from jax import Array
 
-from hybrid_rl import config
 from hybrid_rl.controllers.refits import RefitsController
 from hybrid_rl.controllers.sampling import SamplingController
 from hybrid_rl.controllers.stages import StagesController
@@ -20,7 +19,8 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.models.world import World
 from hybrid_rl.objectives.predicted_return import PredictedReturn
 from hybrid_rl.rewards.world import WorldReward
-from hybrid_rl.trained import Trained
+from hybrid_rl.run.saved import Trained
+from hybrid_rl.settings import build as config
 from hybrid_rl.training.contract import needs_world
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import EnvState, Params, Path, Spec

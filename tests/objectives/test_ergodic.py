@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from hybrid_rl import config
 from hybrid_rl.core.domain import Box
 from hybrid_rl.core.ergodic import Points, divergence
 from hybrid_rl.objectives.fourier_ergodic import FourierErgodic
 from hybrid_rl.objectives.kl_ergodic import JensenErgodic, KLErgodic, KLState
+from hybrid_rl.settings import build as config
 from hybrid_rl.targets.mixture import Mixture
 from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import EnvState, Params, Path, Spec

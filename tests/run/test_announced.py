@@ -11,8 +11,8 @@ from tiny import TINY, call_train, rows_of, run
 
 from hybrid_rl import train
 from hybrid_rl.errors import WorldError
-from hybrid_rl.overrides import quoted
 from hybrid_rl.run.session import Session
+from hybrid_rl.settings.words import quoted
 
 pytestmark = pytest.mark.turns(3)
 

@@ -10,11 +10,12 @@ import pytest
 from omegaconf import OmegaConf
 from tiny import TINY, call, call_train, contents, demonstrate, only_line, run, summary_of
 
-from hybrid_rl import __version__, config, evaluate, figures, render
+from hybrid_rl import __version__, evaluate, figures, render
 from hybrid_rl import demonstrate as recording
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
 from hybrid_rl.run import folder as run_folder
+from hybrid_rl.settings import build as config
 
 METHODS = {
     "sac": "halfcheetah",

@@ -13,11 +13,11 @@ from tiny import TINY, call, call_train, contents, only_line, run
 
 from hybrid_rl import evaluate, render
 from hybrid_rl.cli import command
-from hybrid_rl.config import load
 from hybrid_rl.errors import UsageError, WorldError
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.files import integrity
 from hybrid_rl.run.files.lock import lock
+from hybrid_rl.settings.build import load
 from hybrid_rl.tools.doctor.__main__ import examine
 from hybrid_rl.tools.report import __main__ as report
 from hybrid_rl.training.loop import Loop

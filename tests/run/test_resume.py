@@ -10,9 +10,10 @@ import pytest
 from omegaconf import OmegaConf
 from tiny import TINY, call_train, contents, run, summary_of
 
-from hybrid_rl import __version__, config
+from hybrid_rl import __version__
 from hybrid_rl.run import launch
 from hybrid_rl.run.checkpoints import checkpoint
+from hybrid_rl.settings import build as config
 from scripts import interrupt
 
 pytestmark = pytest.mark.turns(4)

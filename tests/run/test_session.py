@@ -12,7 +12,6 @@ import pytest
 from tiny import TINY, call_train, rows_of, run, summary_of
 
 from hybrid_rl.errors import DivergenceError
-from hybrid_rl.overrides import quoted
 from hybrid_rl.run import schedule, session
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.evaluations import Evaluations
@@ -21,6 +20,7 @@ from hybrid_rl.run.logs.progress import Progress
 from hybrid_rl.run.logs.rows import Gathered
 from hybrid_rl.run.schedule import Pace, Schedule, Speed
 from hybrid_rl.run.session import Session
+from hybrid_rl.settings.words import quoted
 from hybrid_rl.training.loop import Loop
 from scripts import interrupt
 

@@ -11,11 +11,12 @@ from omegaconf import OmegaConf
 from programs import shared
 from tiny import call_train, contents, only_line, rows_of, run, summary_of
 
-from hybrid_rl import config, trained
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import folder, start, together
+from hybrid_rl.run import saved as trained
 from hybrid_rl.run.checkpoints.store import Store
+from hybrid_rl.settings import build as config
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import Loop
 from scripts import interrupt

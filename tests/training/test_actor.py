@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 from counting import LINE, Counting, broken, lost, moved, of
 
-from hybrid_rl import config
 from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.errors import WorldError
+from hybrid_rl.settings import build as config
 from hybrid_rl.training import actor as actors
 from hybrid_rl.training.actor import Actor
 from hybrid_rl.training.robot_process import RobotProcess

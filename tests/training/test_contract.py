@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 import hybrid_rl as hr
-from hybrid_rl import config
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.controllers.sampling import SamplingController
 from hybrid_rl.critics.ensemble_q import EnsembleQ
@@ -24,6 +23,7 @@ from hybrid_rl.objectives.predicted_return import PredictedReturn
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
 from hybrid_rl.proposals.noise import NoiseProposal
 from hybrid_rl.rewards.network import RewardNetwork
+from hybrid_rl.settings import build as config
 
 
 @dataclass(frozen=True)

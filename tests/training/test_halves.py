@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import small
 
-from hybrid_rl import config
+from hybrid_rl.settings import build as config
 from hybrid_rl.training.metrics import outcome
 
 pytestmark = pytest.mark.turns(3)

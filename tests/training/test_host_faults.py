@@ -13,11 +13,11 @@ from gymnasium.spaces import Box, Dict, Discrete
 from gymnasium.wrappers import OrderEnforcing, TimeLimit
 from hosted import Count, counting
 
-from hybrid_rl import config
-from hybrid_rl.checks import check
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.errors import UsageError, WorldError
 from hybrid_rl.fields import FieldError
+from hybrid_rl.settings import build as config
+from hybrid_rl.settings.values import check
 from hybrid_rl.types import Spec
 
 STEPS = 5  # decisions of an episode

@@ -15,13 +15,15 @@ from gymnasium.vector import AutoresetMode, SyncVectorEnv
 from hosted import Count, counting
 from tiny import call
 
-from hybrid_rl import config, export, exported
+from hybrid_rl import export
 from hybrid_rl.cli import command
 from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.data.replay import unpack
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.adapters.gymnasium import GymnasiumEnv
-from hybrid_rl.trained import Trained
+from hybrid_rl.run import exported
+from hybrid_rl.run.saved import Trained
+from hybrid_rl.settings import build as config
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.host_loop import HostEvaluator, HostLoop, seed_of
 from hybrid_rl.training.loop import Loop

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from jax import Array
 
-from hybrid_rl import config
 from hybrid_rl.data.replay import Replay, unpack
+from hybrid_rl.settings import build as config
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Batch, EnvState, Params, Spec

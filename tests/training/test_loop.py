@@ -8,7 +8,7 @@ import jax
 import pytest
 from tiny import TINY
 
-from hybrid_rl import config
+from hybrid_rl.settings import build as config
 from hybrid_rl.training.loop import COMPILER_OPTIONS, Loop, compile_lowered
 
 # An instruction of a compiled program: "%name = f32[2,211,1,10]{3,2,1,0} copy(...".

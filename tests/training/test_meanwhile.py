@@ -13,9 +13,9 @@ import small
 from hosted import counting
 from test_host_loop import ROUNDS, STEPS, agents
 
-from hybrid_rl import config
 from hybrid_rl.errors import WorldError
 from hybrid_rl.learners.return_scale import ReturnScale
+from hybrid_rl.settings import build as config
 from hybrid_rl.training import sending
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import REPLICATED, SEEDS

@@ -9,7 +9,7 @@ import pytest
 from jax import Array
 from tiny import TINY, demonstrate
 
-from hybrid_rl import config
+from hybrid_rl.settings import build as config
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.types import Params
 

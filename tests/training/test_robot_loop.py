@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from counting import LINE, Counting, broken, lost, moved, of
 
-from hybrid_rl import config
 from hybrid_rl.errors import UsageError
+from hybrid_rl.settings import build as config
 from hybrid_rl.training.loops import loop_of
 from hybrid_rl.training.robot_loop import RobotProgram
 from hybrid_rl.training.robot_process import RobotProcess

@@ -11,7 +11,7 @@ import pytest
 from jax import Array
 
 from hybrid_rl.errors import UsageError
-from hybrid_rl.trained import Trained
+from hybrid_rl.run.saved import Trained
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import advance, begin, evaluate_episodes, rollout
 from hybrid_rl.types import EnvState, Params, Spec

@@ -29,7 +29,7 @@ def one(width: int, way: str, learners: int, repeats: int) -> dict[str, Any]:
     import jax
     import jax.numpy as jnp
 
-    from hybrid_rl import config
+    from hybrid_rl.settings import build as config
 
     given = ["task=cart_swing_up", "algo=fisher", f"model.hidden=[{width},{width}]", *WAYS[way]]
     if way == "alone":

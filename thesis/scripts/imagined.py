@@ -21,7 +21,7 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.errors import CheckpointError, UsageError
-from hybrid_rl.trained import load
+from hybrid_rl.run.saved import load
 
 COUNTS = (5, 10, 25)  # decisions ahead
 

@@ -115,8 +115,8 @@ def reported(best: Curve, lyapunov: Curve | None) -> dict[str, Any]:
 
 def _seconds(curve: Curve) -> np.ndarray:
     """Time [s] of a curve's points."""
-    from hybrid_rl.config import build
     from hybrid_rl.run.folder import parse_config
+    from hybrid_rl.settings.build import build
 
     return curve.x * build(parse_config(Path(curve.runs[0]))).agent.spec.dt
 

@@ -21,7 +21,7 @@ from jax import Array
 from hybrid_rl.analysis.style import blank
 from hybrid_rl.cli.arguments import numbers as numbers_kind
 from hybrid_rl.cli.arguments import whole
-from hybrid_rl.config import Run, build, load
+from hybrid_rl.settings.build import Run, build, load
 
 FALL = "experiment=thesis/fig_7_2"
 HORIZONS = (16, 32, 64, 128, 256)

@@ -16,10 +16,10 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.analysis.style import BLACK, BLUE, GREY, VERMILION, blank, legend_below, plain_log
-from hybrid_rl.config import Run, build, load
 from hybrid_rl.core import riccati
 from hybrid_rl.core.analytic import at_equilibrium, linearise
 from hybrid_rl.envs.analytic.van_der_pol import FORCE
+from hybrid_rl.settings.build import Run, build, load
 from hybrid_rl.thesis.studies.optimal_path import cost, optimal
 from hybrid_rl.thesis.studies.unseen import transitions
 from hybrid_rl.types import Params

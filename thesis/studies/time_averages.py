@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.config import Run
+from hybrid_rl.settings.build import Run
 
 GRID = 100  # cells a side of the unit square
 VARIANCE = 0.005  # [m^2] of the Gaussians in the time average q

@@ -14,9 +14,9 @@ import numpy as np
 from jax import Array
 from jax.flatten_util import ravel_pytree
 
-from hybrid_rl.config import Run, build, load
 from hybrid_rl.core import fisher
 from hybrid_rl.networks import mean_weights, precision
+from hybrid_rl.settings.build import Run, build, load
 from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import Batch, Params
 

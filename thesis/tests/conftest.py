@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from hybrid_rl import config, train
+from hybrid_rl import train
+from hybrid_rl.settings import build as config
 
 SHORT = ["total_steps=12", "episode.steps=12", "num_seeds=2", "compile_cache=null"]
 CONTACTS = {

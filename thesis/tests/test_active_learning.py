@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 from tiny import call
 
-from hybrid_rl import config, figures, train
+from hybrid_rl import figures, train
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.cart_swing_up import CartSwingUp
 from hybrid_rl.models.exact import Exact
+from hybrid_rl.run.saved import load
+from hybrid_rl.settings import build as config
 from hybrid_rl.thesis.studies import active_learning, unseen
-from hybrid_rl.trained import load
 
 SHORT = [
     "experiment=thesis/fig_4_1",

@@ -10,11 +10,12 @@ import pytest
 from scipy.linalg import solve_discrete_are
 from tiny import call, only_line
 
-from hybrid_rl import config, figures, train
+from hybrid_rl import figures, train
 from hybrid_rl.cli import command
 from hybrid_rl.core.domain import Box
 from hybrid_rl.envs.analytic.lander import ANGLE, DT, Lander
 from hybrid_rl.policies.deterministic import Deterministic
+from hybrid_rl.settings import build as config
 from hybrid_rl.targets.policy_information import PolicyInformation
 from hybrid_rl.thesis.studies import backflips
 from hybrid_rl.training.rollout import evaluation_keys

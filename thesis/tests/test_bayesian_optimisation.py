@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from tiny import call, rows_of
 
-from hybrid_rl import config, figures, train
+from hybrid_rl import figures, train
 from hybrid_rl.analysis.curves import Curve
 from hybrid_rl.cli import command
+from hybrid_rl.settings import build as config
 from hybrid_rl.thesis.studies import bayesian_optimisation
 
 SHORT = ["episode.steps=80", "total_steps=80", "eval_every=80", "checkpoint_every=80"]

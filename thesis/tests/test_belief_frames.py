@@ -18,8 +18,8 @@ from hybrid_rl.analysis.belief.panel import Panel, View, level
 from hybrid_rl.analysis.recorded import read
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.contact_plane import THREE
+from hybrid_rl.run.saved import restore
 from hybrid_rl.thesis.studies import contacts
-from hybrid_rl.trained import restore
 
 pytestmark = pytest.mark.xdist_group("contact_runs")  # their fixture is expensive
 

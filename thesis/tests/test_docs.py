@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hybrid_rl.conf_files import options
 from hybrid_rl.list import FIRST
+from hybrid_rl.settings.groups import options
 from scripts import docs
 
 ROOT = Path(__file__).resolve().parents[2]

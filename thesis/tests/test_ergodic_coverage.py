@@ -9,7 +9,7 @@ from tiny import call
 from hybrid_rl import figures
 from hybrid_rl.analysis.curves import spread
 from hybrid_rl.cli import command
-from hybrid_rl.config import build, load
+from hybrid_rl.settings.build import build, load
 from hybrid_rl.thesis.studies import ergodic_coverage
 from hybrid_rl.thesis.studies.time_averages import averages, divergences
 

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from tiny import call, only_line
 
-from hybrid_rl import config, figures, train
+from hybrid_rl import figures, train
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
+from hybrid_rl.settings import build as config
 from hybrid_rl.thesis.studies import queries
 from hybrid_rl.training.rollout import evaluate_episodes, evaluation_keys
 from hybrid_rl.types import Params

@@ -11,13 +11,14 @@ import pytest
 from scipy.linalg import solve_discrete_are
 from tiny import call
 
-from hybrid_rl import config, figures
+from hybrid_rl import figures
 from hybrid_rl.cli import command
 from hybrid_rl.features.monomials import Monomials
 from hybrid_rl.learners.least_squares import LeastSquares
 from hybrid_rl.learners.regulator import RegulatorLearner
 from hybrid_rl.models.koopman import Koopman
 from hybrid_rl.policies.linear import Linear
+from hybrid_rl.settings import build as config
 from hybrid_rl.thesis.studies import optimal_path, oscillator
 from hybrid_rl.types import Spec
 

@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 from tiny import call
 
-from hybrid_rl import config, figures, train
+from hybrid_rl import figures, train
 from hybrid_rl.analysis import drawing, recorded
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.quadcopter_se3 import DT
 from hybrid_rl.errors import UsageError
+from hybrid_rl.settings import build as config
 from hybrid_rl.thesis.studies import (
     embeddings,
     fall_frames,

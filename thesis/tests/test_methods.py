@@ -8,10 +8,10 @@ import small
 from hydra.utils import get_class
 from omegaconf import DictConfig, OmegaConf
 
-from hybrid_rl import config
 from hybrid_rl import list as listed
-from hybrid_rl.conf_files import THESIS, file, options
 from hybrid_rl.fields import Must
+from hybrid_rl.settings import build as config
+from hybrid_rl.settings.groups import THESIS, file, options
 
 OF_TASK = {  # methods that need another task
     **dict.fromkeys(("computed_torque", "joint_pd"), "sawyer_torque"),

@@ -12,12 +12,13 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from tiny import call, rows_of
 
-from hybrid_rl import config, figures, train
+from hybrid_rl import figures, train
 from hybrid_rl.cli import command
 from hybrid_rl.data.replay import Memory, Replay
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
 from hybrid_rl.models.exact import Exact
 from hybrid_rl.models.local_linear import LocalLinear
+from hybrid_rl.settings import build as config
 from hybrid_rl.thesis.studies import flights, model_learning
 from hybrid_rl.types import Batch, Params
 

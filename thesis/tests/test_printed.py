@@ -7,8 +7,8 @@ import pytest
 from hydra import compose, initialize_config_dir
 from omegaconf import OmegaConf
 
-from hybrid_rl.config import CONF, READ
-from hybrid_rl.overrides import raw_values, reachable_keys
+from hybrid_rl.settings.build import CONF, READ
+from hybrid_rl.settings.words import raw_values, reachable_keys
 from scripts.pages import printed
 
 ENTRIES = printed.entries()

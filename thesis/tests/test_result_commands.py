@@ -5,7 +5,7 @@ import pytest
 import small
 import test_methods
 
-from hybrid_rl import config
+from hybrid_rl.settings import build as config
 
 RUN_ELSEWHERE = {(test_methods.of_task(algo), algo) for algo in test_methods.RUN} | {
     ("cartpole", "hybrid_stochastic"),  # by test_commands.py

@@ -17,8 +17,8 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.data import archive
-from hybrid_rl.drafts import replacing
 from hybrid_rl.fields import FieldError, part
+from hybrid_rl.files.atomic import replacing
 
 FIELDS = ("f", "low", "high", "slope")
 WRITE = "`python -m hybrid_rl.figures study=contact_maps view=map` writes one"

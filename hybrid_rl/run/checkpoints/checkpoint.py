@@ -25,8 +25,8 @@ from typing import Any
 
 import jax
 
-from hybrid_rl.drafts import own_folder, sync
 from hybrid_rl.errors import CheckpointError
+from hybrid_rl.files.atomic import own_folder, sync
 from hybrid_rl.run.checkpoints import leaves
 from hybrid_rl.run.files import integrity
 from hybrid_rl.run.files.reading import from_json

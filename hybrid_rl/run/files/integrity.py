@@ -10,7 +10,7 @@ import json
 import os
 from pathlib import Path
 
-from hybrid_rl.drafts import replacing, sync
+from hybrid_rl.files.atomic import replacing, sync
 from hybrid_rl.run.files.reading import from_json
 
 MANIFEST = "manifest.json"

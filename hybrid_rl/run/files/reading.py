@@ -13,8 +13,8 @@ from typing import Any, BinaryIO
 
 import yaml
 
-from hybrid_rl.drafts import NO_WAIT
 from hybrid_rl.errors import UsageError
+from hybrid_rl.files.atomic import NO_WAIT
 
 TEXT, YAML, LINE = 2**25, 2**20, 2**20  # [bytes] of a file, of one in YAML, of a line at most
 VALUES = 20_000  # of a YAML file at most; what is referenced counts each time

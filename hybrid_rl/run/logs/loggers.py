@@ -20,8 +20,8 @@ from io import StringIO
 from pathlib import Path
 from typing import Any
 
-from hybrid_rl.drafts import open_own, own_folder
 from hybrid_rl.errors import FAULTS, CheckpointError, UsageError, install
+from hybrid_rl.files.atomic import open_own, own_folder
 from hybrid_rl.run.files.reading import lines
 from hybrid_rl.run.logs.records import COORDINATES, Row, row_of
 

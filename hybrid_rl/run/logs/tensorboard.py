@@ -14,7 +14,7 @@ from tensorboardX.proto.event_pb2 import (  # made at import, so pyright cannot 
 )
 from tensorboardX.proto.summary_pb2 import Summary  # pyright: ignore[reportAttributeAccessIssue]
 
-from hybrid_rl.drafts import own_folder
+from hybrid_rl.files.atomic import own_folder
 from hybrid_rl.run.logs.loggers import Logger, scalars
 from hybrid_rl.run.logs.records import Row
 

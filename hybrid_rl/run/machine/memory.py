@@ -7,10 +7,10 @@ from typing import Any
 
 import jax
 
-from hybrid_rl.config import Run
 from hybrid_rl.errors import UsageError
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run.checkpoints.checkpoint import nbytes
+from hybrid_rl.settings.build import Run
 from hybrid_rl.training import rollout
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import Loop

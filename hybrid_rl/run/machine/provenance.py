@@ -9,7 +9,7 @@ from pathlib import Path
 
 import jax
 
-from hybrid_rl import __version__
+from hybrid_rl.version import __version__
 
 PACKAGES = ("jax", "jaxlib", "mujoco", "mujoco-mjx", "flax", "optax")
 

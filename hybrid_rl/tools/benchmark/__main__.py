@@ -27,10 +27,12 @@ import json
 from time import perf_counter
 from typing import Any
 
-from hybrid_rl import UsageError, arguments, command, conf_files, config
+from hybrid_rl import UsageError, arguments, command
 from hybrid_rl.networks.precision import PRECISIONS
 from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.machine.jax_settings import prepare
+from hybrid_rl.settings import build as config
+from hybrid_rl.settings import groups as conf_files
 from hybrid_rl.tools.benchmark.parts import PARTS, TASKS, Table
 
 EXPERIMENT = "thesis/fig_3_2_halfcheetah"

@@ -12,8 +12,9 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl import Agent, Episode, Loop, config
+from hybrid_rl import Agent, Episode, Loop
 from hybrid_rl.controllers.constant import ConstantController
+from hybrid_rl.settings import build as config
 from hybrid_rl.tools.benchmark.products import alone as products_alone
 from hybrid_rl.tools.benchmark.products import operations, products
 from hybrid_rl.tools.benchmark.race import Contestant

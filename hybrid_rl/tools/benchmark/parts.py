@@ -14,10 +14,11 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from hybrid_rl import Agent, UsageError, arguments, config
+from hybrid_rl import Agent, UsageError, arguments
 from hybrid_rl.analysis.curves import plural
 from hybrid_rl.networks import precision
 from hybrid_rl.run.machine.jax_settings import CACHE
+from hybrid_rl.settings import build as config
 from hybrid_rl.tools.benchmark.race import Contestant, race
 
 TASKS = "halfcheetah,hopper,cartpole"

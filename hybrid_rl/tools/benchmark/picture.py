@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from hybrid_rl import style
-from hybrid_rl.drafts import replacing
+from hybrid_rl.files.atomic import replacing
 
 Table = dict[str, Any]  # part, what, unit, rows of name and rate
 WIDTH, BAR, HEAD = 4.2, 0.27, 0.5  # [in] of a panel; heights of a bar, and of a panel's title

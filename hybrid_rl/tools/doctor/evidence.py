@@ -18,14 +18,14 @@ import numpy as np
 from hybrid_rl import CheckpointError, Trained, UsageError, load
 from hybrid_rl.analysis.held_out import RandomActions
 from hybrid_rl.analysis.results import RunFolder
-from hybrid_rl.config import Run
 from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.data.replay import unpack
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.machine.jax_settings import prepare
+from hybrid_rl.run.saved import build_run, restore
+from hybrid_rl.settings.build import Run
 from hybrid_rl.tools.doctor.tried import Tried, episodes
-from hybrid_rl.trained import build_run, restore
 from hybrid_rl.types import Params, Transition
 
 LEARNERS = 4  # of a run that are examined one by one

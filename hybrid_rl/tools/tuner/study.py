@@ -17,8 +17,8 @@ from hydra.core.override_parser.types import Override
 
 from hybrid_rl import UsageError, part
 from hybrid_rl.cli.combinations import listed
-from hybrid_rl.drafts import refuse_link
 from hybrid_rl.fields import Count, Natural
+from hybrid_rl.files.atomic import refuse_link
 from hybrid_rl.run.logs.records import Row
 from hybrid_rl.run.session import RETURNS
 

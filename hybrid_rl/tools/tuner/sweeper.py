@@ -17,16 +17,17 @@ from typing import Any
 from hydra.core.override_parser.types import Override
 from omegaconf import DictConfig, OmegaConf
 
-from hybrid_rl import UsageError, figures, overrides
+from hybrid_rl import UsageError, figures
 from hybrid_rl.cli import sweep
 from hybrid_rl.cli.combinations import jobs_of, labels
-from hybrid_rl.conf_files import options
-from hybrid_rl.drafts import refuse_link
 from hybrid_rl.errors import install
 from hybrid_rl.fields import FieldError
+from hybrid_rl.files.atomic import refuse_link
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.files.lock import lock
+from hybrid_rl.settings import words as overrides
+from hybrid_rl.settings.groups import options
 from hybrid_rl.tools.tuner import study, tuning
 
 INSTALL = f"hydra/sweeper=tuned: Optuna is not installed; {install('tune')}"

@@ -55,14 +55,14 @@ def open_session(given: Mapping[str, Any], changes: Mapping[str, str], server: A
 
     server: makes a viser.ViserServer, after all that can be wrong with the arguments.
     """
-    from hybrid_rl.conf_files import options
     from hybrid_rl.envs.adapters.external import External
+    from hybrid_rl.run.saved import load_named
+    from hybrid_rl.settings.groups import options
     from hybrid_rl.tools.view.following import Follower
     from hybrid_rl.tools.view.panel import Wishes
     from hybrid_rl.tools.view.player import Choice, Player
     from hybrid_rl.tools.view.session import Session
     from hybrid_rl.tools.view.subject import Source, learner
-    from hybrid_rl.trained import load_named
 
     trained = None if given["task"] else load_named(given)
     source = Source(given, changes, trained)

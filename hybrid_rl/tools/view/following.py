@@ -5,8 +5,8 @@ from pathlib import Path
 
 from hybrid_rl import CheckpointError, Trained
 from hybrid_rl.run.checkpoints import checkpoint
+from hybrid_rl.run.saved import build_run, of
 from hybrid_rl.tools.view.subject import learner
-from hybrid_rl.trained import build_run, of
 from hybrid_rl.types import Params
 
 EVERY = 2.0  # [s] between two looks at the folder

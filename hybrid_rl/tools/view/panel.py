@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from viser import ViserServer
 
-from hybrid_rl.checks import SEEDS
+from hybrid_rl.settings.values import SEEDS
 from hybrid_rl.tools.view.history import PLOTS, History
 from hybrid_rl.tools.view.player import Choice
 from hybrid_rl.tools.view.push import Pull

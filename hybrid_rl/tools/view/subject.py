@@ -11,11 +11,11 @@ from functools import cached_property
 from typing import Any, get_args
 
 from hybrid_rl import Episode, Trained, UsageError
-from hybrid_rl.config import PAID
 from hybrid_rl.demonstrate import scripted_expert
 from hybrid_rl.fields import Must, choices, plain
-from hybrid_rl.goals import apply_changes
 from hybrid_rl.protocols import Controller
+from hybrid_rl.run.retarget import apply_changes
+from hybrid_rl.settings.build import PAID
 from hybrid_rl.training.contract import needs_world
 from hybrid_rl.types import Params
 

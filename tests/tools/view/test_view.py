@@ -11,7 +11,6 @@ import pytest
 from chromium import PROGRAM, opened, until
 from tiny import call, call_train, only_line, run
 
-from hybrid_rl import trained
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.lander import Lander
 from hybrid_rl.envs.analytic.pendulum import Pendulum
@@ -22,6 +21,7 @@ from hybrid_rl.envs.panda_stack import PandaStack
 from hybrid_rl.envs.quadcopter import Quadcopter
 from hybrid_rl.envs.sawyer_torque import SawyerTorque
 from hybrid_rl.rewards.aim import Aim
+from hybrid_rl.run import saved as trained
 from hybrid_rl.tools.view import __main__ as view
 from hybrid_rl.tools.view import push
 from hybrid_rl.tools.view.following import Follower

@@ -8,9 +8,9 @@ from chromium import until
 from test_view import BLANK, player
 from viser import ViserServer
 
-from hybrid_rl import trained
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.errors import UsageError
+from hybrid_rl.run import saved as trained
 from hybrid_rl.tools.view import __main__ as view
 from hybrid_rl.tools.view import imagined
 from hybrid_rl.tools.view.player import Choice

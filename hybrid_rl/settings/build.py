@@ -13,10 +13,17 @@ from hydra.core.global_hydra import GlobalHydra
 from omegaconf import DictConfig, ListConfig, OmegaConf, open_dict
 from omegaconf.errors import OmegaConfBaseException
 
-from hybrid_rl import checks
-from hybrid_rl import overrides as overriding
-from hybrid_rl.checks import COUNTS, PAID, SECTIONS, check, check_fields, check_kinds
-from hybrid_rl.composition import (
+from hybrid_rl.envs.adapters.external import External, check_world
+from hybrid_rl.envs.adapters.robot import Robot
+from hybrid_rl.envs.mujoco.physics import resolve as resolve_physics
+from hybrid_rl.errors import PartError, UsageError
+from hybrid_rl.fields import FieldError
+from hybrid_rl.files.targets import build as build_part
+from hybrid_rl.protocols import Controller
+from hybrid_rl.settings import values as checks
+from hybrid_rl.settings import words as overriding
+from hybrid_rl.settings.complete import LACKING, complete, refusal, select
+from hybrid_rl.settings.compose import (
     UNCOMPOSED,
     check_choices,
     check_keys,
@@ -26,16 +33,9 @@ from hybrid_rl.composition import (
     settings_keys,
     tasks_with,
 )
-from hybrid_rl.conf_files import CONF, groups, search_path
-from hybrid_rl.envs.adapters.external import External, check_world
-from hybrid_rl.envs.adapters.robot import Robot
-from hybrid_rl.envs.mujoco.physics import resolve as resolve_physics
-from hybrid_rl.errors import PartError, UsageError
-from hybrid_rl.fields import FieldError
-from hybrid_rl.parts import build as build_part
-from hybrid_rl.protocols import Controller
-from hybrid_rl.settings.complete import LACKING, complete, refusal, select
+from hybrid_rl.settings.groups import CONF, groups, search_path
 from hybrid_rl.settings.registry import register
+from hybrid_rl.settings.values import COUNTS, PAID, SECTIONS, check, check_fields, check_kinds
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import Imagination

@@ -15,7 +15,7 @@ from typing import Any
 
 from hybrid_rl.errors import GYMNASIUM, user_line
 
-PACKAGE = Path(__file__).parent
+PACKAGE = Path(__file__).parents[1]
 CHECKOUT = ("envs", "hydra_plugins", "scripts", "tests", "thesis")  # modules beside PACKAGE
 NONE = "is no part of hybrid_rl"
 OTHER = f"{NONE}; put its folder on PYTHONPATH if it is yours"

@@ -20,10 +20,10 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from hybrid_rl import modules
 from hybrid_rl.errors import FAULTS, UsageError, printable, relative, user_line
 from hybrid_rl.fields import FieldError, choices, method_of
-from hybrid_rl.modules import NONE, OTHER, PACKAGE
+from hybrid_rl.files import modules
+from hybrid_rl.files.modules import NONE, OTHER, PACKAGE
 
 TARGET, OURS = "_target_", "hybrid_rl."
 NAMED = re.compile(r"([^\W\d][\w.]*):([^\W\d][\w./-]*)")  # MODULE:NAME, MODULE:ID

@@ -5,7 +5,7 @@ from pathlib import Path
 from hybrid_rl.errors import UsageError
 from hybrid_rl.settings import registry
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).parents[1]
 CONF = next(p for p in (HERE / "conf", HERE.parent / "conf") if (p / "train.yaml").exists())
 THESIS = CONF.parent / "thesis" / "conf"  # methods by the thesis' names, on the search path
 MODES = ("full", "policy", "planner")  # keys of `controllers`: who acts

@@ -4,12 +4,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hybrid_rl import config
 from hybrid_rl.errors import UsageError
+from hybrid_rl.settings import build as config
 from hybrid_rl.training.episode import Episode
 
 if TYPE_CHECKING:
-    from hybrid_rl.trained import Trained
+    from hybrid_rl.run.saved import Trained
 
 
 def make(task: str, overrides: Sequence[str] = (), config_dir: str | Path | None = None) -> Episode:
@@ -46,7 +46,7 @@ def load(run: str | Path) -> "Trained":
         UsageError: if there is no such thing, or it is damaged.
         CheckpointError: if none of a run's checkpoints is sound.
     """
-    from hybrid_rl import trained
+    from hybrid_rl.run import saved as trained
 
     name = str(run)
     if not Path(run).is_dir() and (name.endswith(".npz") or name in trained.names()):

@@ -12,12 +12,12 @@ from hydra.errors import HydraException, MissingConfigException, OverrideParseEx
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import InterpolationKeyError, OmegaConfBaseException
 
-from hybrid_rl import overrides
-from hybrid_rl.checks import COUNTS, check_fields
-from hybrid_rl.conf_files import CONF, THESIS, options
 from hybrid_rl.errors import UsageError, install, printable, relative
-from hybrid_rl.parts import asked, part_class
+from hybrid_rl.files.targets import asked, part_class
+from hybrid_rl.settings import words as overrides
 from hybrid_rl.settings.complete import keys, nearest
+from hybrid_rl.settings.groups import CONF, THESIS, options
+from hybrid_rl.settings.values import COUNTS, check_fields
 from hybrid_rl.training.episode import Episode
 
 OF_A_TASK = ("task", "env", *COUNTS, "random_steps")  # keys without which no run can begin

@@ -9,17 +9,17 @@ from typing import Any, get_origin
 
 from omegaconf import DictConfig, ListConfig, OmegaConf
 
-from hybrid_rl import parts
-from hybrid_rl.conf_files import MODES
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.adapters.unstepped import Unstepped
 from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS
 from hybrid_rl.errors import UsageError, printable, relative
 from hybrid_rl.fields import as_yaml, choices, plain
+from hybrid_rl.files import targets as parts
 from hybrid_rl.networks.precision import PRECISIONS
-from hybrid_rl.overrides import SHOW
 from hybrid_rl.settings.complete import nearest
+from hybrid_rl.settings.groups import MODES
+from hybrid_rl.settings.words import SHOW
 from hybrid_rl.types import NAME
 
 COUNTS = (

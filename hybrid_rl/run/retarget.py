@@ -35,20 +35,19 @@ from jax import Array
 from omegaconf import DictConfig, OmegaConf, open_dict
 from omegaconf.errors import OmegaConfBaseException
 
-from hybrid_rl import config as configuration
-from hybrid_rl.cli.arguments import GOAL
-from hybrid_rl.composition import check_choices, explain
-from hybrid_rl.conf_files import CONF, search_path
 from hybrid_rl.data.replay import Replay
 from hybrid_rl.envs.adapters.robot import Outside, Robot
 from hybrid_rl.envs.adapters.unstepped import ALONE
 from hybrid_rl.errors import UsageError
-from hybrid_rl.overrides import forced, raw_values, value_of
-from hybrid_rl.parts import part_class
+from hybrid_rl.files.targets import part_class
 from hybrid_rl.protocols import Controller
 from hybrid_rl.protocols.contract import has_users
+from hybrid_rl.run.saved import Trained, load_named
+from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings.complete import LACKING, complete, refusal, select
-from hybrid_rl.trained import Trained, load_named
+from hybrid_rl.settings.compose import check_choices, explain
+from hybrid_rl.settings.groups import CONF, search_path
+from hybrid_rl.settings.words import forced, raw_values, value_of
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.contract import check_acting
 from hybrid_rl.training.episode import Episode
@@ -56,6 +55,7 @@ from hybrid_rl.training.imagined import Imagination
 from hybrid_rl.training.loop import compile_lowered
 from hybrid_rl.types import Params
 
+GOALS = ("reward", "constraint", "planner", "imagine")  # arguments of commands
 PLANNERS = ("planner", "planner_alone")
 UNLEARNED = dict.fromkeys(("model", "reward_model", "policy"))  # where a run has none
 SOFT = ("world", "price", "chance", "width")  # of a constraint: not what it limits
@@ -68,7 +68,7 @@ def load_changed(
 ) -> tuple[Trained, dict[str, str]]:
     """The run or policy that a command names, as its other arguments change it, and these.
 
-    given: run, policy and GOAL; changes: group.KEY=VALUE of CHANGES, of the command line.
+    given: run, policy and GOALS; changes: group.KEY=VALUE of CHANGES, of the command line.
     """
     trained = load_named(given)
     if isinstance(trained.episode.env, Robot | Outside):
@@ -80,7 +80,7 @@ def apply_changes(
     trained: Trained, given: Mapping[str, Any], changes: Mapping[str, str]
 ) -> tuple[Trained, dict[str, str]]:
     """What `load_changed` returns, of a run or policy that is read already."""
-    ours = tuple(each.name for each in GOAL)
+    ours = GOALS
     goal = {key: given[key] for key in ours if given[key]}
     goal |= {key: value for key, value in changes.items() if key.split(".")[0] in ours}
     words = [f"{key}={value}" for key, value in goal.items()]

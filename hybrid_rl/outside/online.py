@@ -26,8 +26,6 @@ import jax
 import numpy as np
 from omegaconf import DictConfig
 
-from hybrid_rl import config as configuration
-from hybrid_rl.checks import check
 from hybrid_rl.envs.adapters.robot import Outside
 from hybrid_rl.errors import DivergenceError, UsageError
 from hybrid_rl.run import folder as run_folder
@@ -38,6 +36,8 @@ from hybrid_rl.run.job import written
 from hybrid_rl.run.launch import fits, refuse_edits
 from hybrid_rl.run.logs.rows import Gathered
 from hybrid_rl.run.machine.jax_settings import prepare
+from hybrid_rl.settings import build as configuration
+from hybrid_rl.settings.values import check
 from hybrid_rl.training.decider import Decider
 from hybrid_rl.training.given import numbers
 from hybrid_rl.training.robot_loop import RobotLoop, packed

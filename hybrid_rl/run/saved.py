@@ -19,22 +19,22 @@ import jax
 import numpy as np
 from omegaconf import DictConfig, OmegaConf
 
-from hybrid_rl import config as configuration
-from hybrid_rl import parts
-from hybrid_rl.checks import check
-from hybrid_rl.config import Run
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.core.lifting import lifted_spec
 from hybrid_rl.data import archive
 from hybrid_rl.data.trained import SavedPolicy, part
 from hybrid_rl.envs.mujoco.physics import resolve
 from hybrid_rl.errors import UsageError, printable
+from hybrid_rl.files import targets as parts
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.checkpoints.store import read_part
 from hybrid_rl.run.files.reading import from_json
 from hybrid_rl.run.logs.progress import say
 from hybrid_rl.run.machine.jax_settings import prepare
+from hybrid_rl.settings import build as configuration
+from hybrid_rl.settings.build import Run
+from hybrid_rl.settings.values import check
 from hybrid_rl.training.acting import TrainedPolicy
 from hybrid_rl.training.agent import Agent, AgentState
 from hybrid_rl.training.contract import needs_world

@@ -1,0 +1,1 @@
+"""Learners beside a world that a program of the user's steps."""
