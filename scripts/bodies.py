@@ -52,7 +52,7 @@ def words(given: dict[str, Any], way: str) -> list[str]:
     then = folder.read(Path(given["run"]), "run")
     begun = [f"run={given['run']}"]
     own = {
-        "refreshed": [*begun, "freeze=[policy]", "controllers.full=${gradient_planner}"],
+        "refreshed": [*begun, "freeze=[policy]", "planner=gradient"],
         "both": begun,
         "scratch": [
             *(f"{key}={then[key]}" for key in ("task", "algo", "seed", "num_seeds")),

@@ -176,7 +176,6 @@ def test_pictures_fit_a_screen_and_bars_begin_at_zero(tmp_path):
     [
         ("parts=physic", "parts=physic: unknown; choose from physics, plan"),
         ("parts=loop precision=low", "precision=low: unknown; choose from auto, mixed, bf16"),
-        ("matmul_precision=default", "matmul_precision=default is precision=tf32"),
         ("parts=act settings=fast", "settings=fast: parts=act does not use it; shares, loop would"),
         ("rounds=0", "rounds=0: must be a whole number, 1 or more"),
         ("out=table.txt", "out=table.txt: must end in .json"),

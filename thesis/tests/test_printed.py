@@ -5,10 +5,10 @@ from typing import Any
 
 import pytest
 from hydra import compose, initialize_config_dir
-from omegaconf import OmegaConf
 
 from hybrid_rl.settings.build import CONF, READ
-from hybrid_rl.settings.words import raw_values, reachable_keys
+from hybrid_rl.settings.complete import complete, keys
+from hybrid_rl.settings.words import raw_values
 from scripts.pages import printed
 
 ENTRIES = printed.entries()
@@ -34,12 +34,12 @@ def values(line: str) -> dict[str, Any]:
     """What a row's parts read: full key -> value, but for options that are off."""
     with initialize_config_dir(str(CONF), version_base="1.3"):
         raw = compose("train", line.split(" "))
-    keys: Any = reachable_keys(raw_values(raw), READ)
-    whole: Any = OmegaConf.to_container(raw, resolve=False)
+    whole = complete(raw_values(raw), READ)
+    read = keys(whole)
     return {
         key: value
         for key, value in leaves(whole)
-        if key in keys
+        if key in read
         and value is not None
         and value is not False
         and not refers(value)
