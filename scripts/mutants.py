@@ -137,15 +137,15 @@ MUTANTS = {
         "tests/learners/test_model_based.py",
     ),
     "a number on a page": Mutant(
-        "docs/results/chapter5.md", "| ours | 14 | 17 |", "| ours | 14 | 18 |", RESULTS
+        "docs/results/planning.md", "| the model"s own body | 5,379 |", "| the model"s own body | 5,3791 |", RESULTS
     ),
     "a number in a page's JSON": Mutant(
         "docs/results/fig_5_4_gains.json", '"good": [', '"good": [7, ', RESULTS
     ),
     f"a {SENTENCE} on a page": Mutant(
         "docs/results/chapter5.md",
-        "The printed step is as good",
-        "The printed step does as well",
+        "the printed step is as good as ours",
+        "the printed step does as well as ours",
         "",
     ),
 }

@@ -27,11 +27,11 @@ from hybrid_rl.types import Spec
 PACKAGE = Path(__file__).resolve().parents[1] / "hybrid_rl"
 ROW = {"step": 5, "seed": 0, "wall_s": 1.0, "eval/return": -3.0}
 WRITERS = ("run/**/*.py", "training/*.py", "data/*_log.py", "data/handover.py", "robot.py")
-WRITERS += ("online.py", "cli/study.py", "cli/tuned.py", "cli/sweep.py", "drafts.py")
+WRITERS += ("outside/*.py", "tools/tuner/*.py", "cli/sweep.py", "files/atomic.py")
 OPENS = r".+\.(write_text|write_bytes|touch|mk\w*dirs?|mkfifo|copy2|copyfile)|(.*\.)?(open|fdopen)"
 OPENS += r"|(np|OmegaConf)\.save\w*"
 OPENED = {  # in what writes to run folders; the folder of a run itself is the user's, or new
-    "drafts.py": {
+    "files/atomic.py": {
         "refuse_link(folder).mkdir(exist_ok=True)",  # `own_folder`
         "os.open(file, flags | NO_LINK | NO_WAIT, 438)",  # `own_file`
         "open(file, mode, opener=lambda path, flags: own_file(Path(path), flags), **how)",

@@ -20,22 +20,23 @@ PAGE = (ROOT / "docs/python.md").read_text(encoding="utf-8")
 TOOLS = ROOT / "hybrid_rl/tools"
 PRIVATE = {  # tool -> what it imports that is not public: take names away, add none
     "benchmark": """
-        analysis.curves.plural conf_files config drafts.replacing envs.mujoco.mjx_warp
-        envs.mujoco.native networks.precision networks.precision.PRECISIONS
+        analysis.curves.plural envs.mujoco.mjx_warp envs.mujoco.native
+        files.atomic.replacing networks.precision networks.precision.PRECISIONS
         run.files.integrity.write_text run.machine.jax_settings.CACHE
-        run.machine.jax_settings.prepare run.machine.provenance
+        run.machine.jax_settings.prepare run.machine.provenance settings.build
+        settings.groups
     """,
     "demo": """
-        analysis.drawing.SUFFIXES conf_files.options envs.mujoco.offscreen errors.install
-        render.draw_film render.episode trained.names trained.read
+        analysis.drawing.SUFFIXES envs.mujoco.offscreen errors.install render.draw_film
+        render.episode run.saved.names run.saved.read settings.groups.options
     """,
     "doctor": """
-        analysis.held_out.RandomActions analysis.results.RunFolder config.Run
+        analysis.held_out.RandomActions analysis.results.RunFolder
         core.lifting.is_identity data.replay.unpack envs.adapters.unstepped.Unstepped
         run.checkpoints.checkpoint run.folder run.logs.rows.of_world
-        run.machine.jax_settings.prepare trained.build_run trained.restore
-        training.host_loop.HostEvaluator training.rollout.evaluate_episodes
-        training.rollout.rollout_with_actions
+        run.machine.jax_settings.prepare run.saved.build_run run.saved.restore
+        settings.build.Run training.host_loop.HostEvaluator
+        training.rollout.evaluate_episodes training.rollout.rollout_with_actions
     """,
     "report": """
         analysis.curves.area analysis.curves.format_number analysis.curves.plural
@@ -51,18 +52,21 @@ PRIVATE = {  # tool -> what it imports that is not public: take names away, add 
         envs.adapters.stand_in.StandIn envs.adapters.stand_in.UNPLUG
     """,
     "tuner": """
-        cli.combinations.jobs_of cli.combinations.labels cli.combinations.listed cli.sweep
-        conf_files.options drafts.refuse_link errors.install figures overrides
+        cli.combinations.jobs_of cli.combinations.labels cli.combinations.listed
+        cli.sweep errors.install figures files.atomic.refuse_link
         run.checkpoints.checkpoint run.files.integrity.write_text run.files.lock.lock
         run.files.reading.json_file run.logs.records.Row run.session.RETURNS
+        settings.groups.options settings.words
     """,
     "view": """
-        arguments.ROBOT arguments.ROBOT_CHANGES arguments.robot checks.SEEDS conf_files.options
-        config.PAID demonstrate.scripted_expert envs.mujoco.mjcf envs.mujoco.physics.PhysicsState
-        envs.mujoco.scenery envs.mujoco.scenery.check_drawable envs.mujoco.scenery.pose_of
-        envs.mujoco.scenery.simulated errors.install fields.Must fields.choices fields.plain
-        goals.apply_changes lifting.lift run.checkpoints.checkpoint trained.build_run
-        trained.load_named trained.of training.rollout.evaluation_keys training.traced.needs_world
+        arguments.ROBOT arguments.ROBOT_CHANGES arguments.robot
+        demonstrate.scripted_expert envs.mujoco.mjcf envs.mujoco.physics.PhysicsState
+        envs.mujoco.scenery envs.mujoco.scenery.check_drawable
+        envs.mujoco.scenery.pose_of envs.mujoco.scenery.simulated errors.install
+        fields.Must fields.choices fields.plain lifting.lift run.checkpoints.checkpoint
+        run.retarget.apply_changes run.saved.build_run run.saved.load_named run.saved.of
+        settings.build.PAID settings.groups.options settings.values.SEEDS
+        training.contract.needs_world training.rollout.evaluation_keys
     """,
 }
 

@@ -1,8 +1,8 @@
 """What the parts of a method must be, checked before a run: JAX traces them, nothing is compiled.
 
-Each part is compared with the protocol of the field that holds it, the library's and the user's
-alike; so are what learners give with what parts use. The program of a whole decision or update is
-traced here only for a method with a part of the user's: a run traces that of the others anyway.
+Each part, also of the library, is compared with the protocol of the field that holds it, and what
+learners give with what parts use. The program of a whole decision or update is traced here only for
+a method with a part of the user's: a run traces that of the others anyway.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -89,7 +89,7 @@ def check(agent: Any, controllers: Iterable[Any]) -> None:
         of.check_members()
     check_owners(whole, owned, agent.spec)
     for of in contracts:
-        if {Model, Features} & {*of.protocol.__mro__}:
+        if {Model, Features} & {*of.protocol.__mro__} and not needs_world(of.part):
             of.check()
     model = getattr(owned.get("model"), "model", None)
     spec, learned, learning = lifting.lifted_spec(model, agent.spec), {}, []

@@ -93,7 +93,7 @@ def test_an_episode_pays_the_goal() -> None:
         (lambda: Run(SawyerPush("native")), "world=SawyerPush: has no speed, only block, reach"),
         (lambda: Push(CHEETAH), "world=HalfCheetah: has no block, only height, pitch, speed"),
         (lambda: Aim(NOTHING), "needs an environment with `quantities`"),
-        (lambda: Episode(CHEETAH, reward=NOTHING), "reward=object: has no reward_of"),
+        (lambda: Episode(CHEETAH, reward=NOTHING), "object has no reward_of; write def reward_of"),
     ],
 )
 def test_what_the_environment_lacks_is_named(make: Any, words: str) -> None:

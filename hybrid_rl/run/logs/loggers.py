@@ -31,7 +31,7 @@ TRACKIO = ("TRACKIO_DIR", "runs/trackio")  # read by Trackio when it is imported
 
 
 class Logger:
-    """A place for rows; subclasses leave out methods for which they have nothing to do."""
+    """Where rows go; subclasses leave out methods for which they have nothing to do."""
 
     def rewind(self, rows: Iterable[Row], step: int) -> None:
         """Keep these rows only: the run continues after them, at `step`."""
