@@ -1,8 +1,8 @@
 """What the parts of a method must be, checked before a run: JAX traces them, nothing is compiled.
 
-Each part, also of the library, is compared with the protocol of the field that holds it, and what
-learners give with what parts use. The program of a whole decision or update is traced here only for
-a method with a part of the user's: a run traces that of the others anyway.
+Each part has the members of the protocol of the field that holds it, and what learners give fits
+what parts use. What a part of the user's gives is compared with the protocol, and a whole decision
+and update are traced where a method has one; a run traces those of the others anyway.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -89,7 +89,7 @@ def check(agent: Any, controllers: Iterable[Any]) -> None:
         of.check_members()
     check_owners(whole, owned, agent.spec)
     for of in contracts:
-        if {Model, Features} & {*of.protocol.__mro__} and not needs_world(of.part):
+        if {Model, Features} & {*of.protocol.__mro__} and of_user(of.part):
             of.check()
     model = getattr(owned.get("model"), "model", None)
     spec, learned, learning = lifting.lifted_spec(model, agent.spec), {}, []
@@ -127,7 +127,8 @@ def check_acting(agent: Any, whole: Iterable[Any], params: Params, names: Any = 
     model = next((part for _, name, _, part in parts(whole) if name == "model" and part), None)
     spec = lifting.lifted_spec(model if not needs_world(model) else None, agent.spec)
     for of in _contracts(whole, spec):
-        if not {Model, Features, *LEARNERS.values()} & {*of.protocol.__mro__}:
+        others = {Model, Features, *LEARNERS.values()} & {*of.protocol.__mro__}
+        if of_user(of.part) and not others:
             own = getattr(of.owner, "model", None)
             of.values["Params"] = params
             of.values["x"] = jax.eval_shape(

@@ -219,21 +219,6 @@ def test_what_a_part_lacks_of_the_protocol_of_its_field_is_one_line(monkeypatch)
         check(learner=LeastSquares(Koopman(Observables())))
 
 
-def test_the_librarys_parts_keep_the_same_contract(monkeypatch):
-    """Every method is built in test_conf.py; here one of its parts is broken."""
-    learner = SAC(TanhGaussian((8,)), EnsembleQ((8,)))
-    agent = hr.Agent(
-        hr.Episode(Pendulum(), 20),
-        PolicyController(learner.policy),
-        {"policy": learner},
-        Replay().within(9, 1),
-    )
-    agent.check(9)
-    monkeypatch.setattr(TanhGaussian, "mean", lambda self, params, x: x)
-    with pytest.raises(PartError, match=r"TanhGaussian\.mean: returned action float32\[3\]; it"):
-        agent.check(9)
-
-
 def test_a_reward_without_a_learner_is_named_and_not_the_users_model():
     planner = SamplingController(Line(), PredictedReturn(RewardNetwork((4,))), NoiseProposal())
     with pytest.raises(ValueError, match=r"^reward=RewardNetwork: PredictedReturn acts by it, and"):
