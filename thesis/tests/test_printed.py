@@ -8,7 +8,8 @@ from hydra import compose, initialize_config_dir
 
 from hybrid_rl.settings.build import CONF, READ
 from hybrid_rl.settings.complete import complete, keys
-from hybrid_rl.settings.words import raw_values
+from hybrid_rl.settings.groups import groups
+from hybrid_rl.settings.words import forced, raw_values
 from scripts.pages import printed
 
 ENTRIES = printed.entries()
@@ -33,7 +34,7 @@ def refers(value: Any) -> bool:
 def values(line: str) -> dict[str, Any]:
     """What a row's parts read: full key -> value, but for options that are off."""
     with initialize_config_dir(str(CONF), version_base="1.3"):
-        raw = compose("train", line.split(" "))
+        raw = compose("train", forced(line.split(" "), groups()))
     whole = complete(raw_values(raw), READ)
     read = keys(whole)
     return {

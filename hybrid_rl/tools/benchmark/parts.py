@@ -22,7 +22,7 @@ from hybrid_rl.settings import build as config
 from hybrid_rl.tools.benchmark.race import Contestant, race
 
 TASKS = "halfcheetah,hopper,cartpole"
-REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "results" / "loop_speed.json"
+REFERENCE = Path(__file__).resolve().parents[3] / "docs" / "results" / "loop_speed.json"
 Settings = dict[str, Any]
 Table = dict[str, Any]
 
