@@ -80,7 +80,7 @@ class Faulty:
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state after one decision with action [m]."""
-        memory = state.info[MEMORY]
+        memory: dict[str, Any] = dict(state.info[MEMORY])
         key, lost, frozen, ends = jax.random.split(jax.random.wrap_key_data(memory["key"]), 4)
         for kind, acts in {
             "flipped": memory["sign"] * action,

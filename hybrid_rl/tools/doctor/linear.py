@@ -72,7 +72,7 @@ def better(run: Evidence) -> str | None:
     )
 
 
-def _repeated(*each: np.ndarray) -> list[Array]:
+def _repeated(*each: np.ndarray | Array) -> list[Array]:
     return [jnp.tile(jnp.array(one, jnp.float32), (POLICIES, 1)) for one in each]
 
 

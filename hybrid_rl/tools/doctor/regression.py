@@ -6,6 +6,8 @@ with z scaled to variance 1 and cut off at FAR; phi is linear where z has too ma
 decisions there are. Each of two folds, stretches of time in turn, is predicted by W of the other.
 """
 
+from typing import Any
+
 import numpy as np
 
 from hybrid_rl.tools.doctor.limits import ERRORS, HISTORY, LEAST
@@ -28,7 +30,7 @@ def explained(z: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def predicted(
-    blocks: list[np.ndarray], y: np.ndarray, fold: np.ndarray | None = None
+    blocks: list[Any], y: Any, fold: np.ndarray | None = None
 ) -> list[np.ndarray]:
     """The part [N, q] of each block [N, p] of features in the prediction of y [N, q].
 
@@ -48,7 +50,7 @@ def predicted(
     return each
 
 
-def missed(y: np.ndarray, prediction: np.ndarray) -> np.ndarray:
+def missed(y: Any, prediction: Any) -> np.ndarray:
     """[N, q] squared error of y over its variance, in no decision more than that."""
     return np.minimum((y - prediction) ** 2 / np.maximum(y.var(0), np.finfo(float).tiny), 1.0)
 

@@ -56,7 +56,8 @@ def _rows(run: Evidence) -> Rows | None:
     _, episode = np.unique(k * len(now) + first, return_inverse=True)
     y = run.change((k, t)).astype(float)
     y /= np.where(y.std(0) > 0, y.std(0), 1.0)
-    return Rows(run.known((k, t)), run.made.action[k, t], y, t - first, episode)
+    action = np.asarray(run.made.action[k, t])
+    return Rows(run.known((k, t)), action, y, t - first, episode)
 
 
 def alternates(run: Evidence) -> str | None:
