@@ -29,9 +29,7 @@ def explained(z: np.ndarray, y: np.ndarray) -> np.ndarray:
     return np.maximum(1 - left, 0)
 
 
-def predicted(
-    blocks: list[Any], y: Any, fold: np.ndarray | None = None
-) -> list[np.ndarray]:
+def predicted(blocks: list[Any], y: Any, fold: np.ndarray | None = None) -> list[np.ndarray]:
     """The part [N, q] of each block [N, p] of features in the prediction of y [N, q].
 
     fold: [N] 0 or 1.
