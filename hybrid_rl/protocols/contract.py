@@ -283,8 +283,8 @@ def parts(part: Any) -> Iterator[tuple[Any, str, Any, Any]]:
             for kind in kinds:  # of unions, tuples and annotations, what they are of
                 kinds += get_args(kind)
             known = [kind for kind in kinds if getattr(kind, "_is_protocol", False)]
-            several = value.values() if isinstance(value, Mapping) else value
-            for inner in several if isinstance(value, list | tuple | Mapping) else (value,):
+            one = value if isinstance(value, list | tuple) else (value,)
+            for inner in value.values() if isinstance(value, Mapping) else one:
                 if not (inner is None or isinstance(inner, bool | int | float | str)):
                     yield part, field.name, known[0] if len(known) == 1 else None, inner
                     yield from parts(inner)
