@@ -43,6 +43,7 @@ def port(name: str, given: str) -> int:
     return number
 
 
+CHANGES = arguments.ROBOT_CHANGES
 ARGUMENTS = (
     *arguments.ROBOT,
     arguments.Argument("port", 8080, "of the link, or the next one that is free", port),
@@ -139,7 +140,7 @@ def show(
 
 def main() -> None:
     """The command."""
-    given, changes = arguments.read(__doc__, ARGUMENTS, arguments.ROBOT_CHANGES)
+    given, changes = arguments.read(__doc__, ARGUMENTS, CHANGES)
     arguments.robot(given, changes)
     check_address(given["host"], given["port"])
     import_viser()
