@@ -75,7 +75,6 @@ def held(node: Any) -> set[str]:
     )
 
 
-# what holds the parts; models=world plans on an Episode, too
 EVERYWHERE = {"hybrid_rl.training.agent.Agent", "hybrid_rl.training.episode.Episode"}
 
 

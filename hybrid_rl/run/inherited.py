@@ -23,7 +23,7 @@ CHOSEN = ("task", "algo", "learning")  # they make the parameters
 WIDE = ("settings", "experiment")  # they would set what DIR has set
 OWN = ("random_steps", "pretrain", "run_dir", "freeze", "distributed", "resume", "run")
 FRESH = ("random_steps=0", "pretrain=0")  # the learners have begun
-RESOLVER = re.compile(r"\$\{[^}]*:")  # ${oc.env:NAME}, which no recipe of a run needs
+FOREIGN = re.compile(r"\$\{[^}]*:|^\+*(hydra|(?!demonstrations=)[\w@]+=[^=]*\.\.)")
 
 
 def add_recipe(texts: Sequence[str], config_dir: str | Path | None = None) -> list[str]:
@@ -42,7 +42,7 @@ def add_recipe(texts: Sequence[str], config_dir: str | Path | None = None) -> li
     paths = (Path(str(each).strip("'\"")) for each in folders)
     first, *others = [_recipe(path, config_dir) for path in paths]
     if any({*each} != {*first} for each in others):
-        raise UsageError(f"{named[-1]}: runs of the same words only, but for the seed")
+        raise UsageError(f"{named[-1]}: runs that the same words made only")
     known = overrides.typed_values(first)
     for key in (*CHOSEN, *WIDE):
         if key in given and given[key] != known.get(key):
@@ -67,7 +67,7 @@ def _recipe(run_dir: Path, config_dir: str | Path | None) -> list[str]:
         raise UsageError(f"{at}: must be a list of KEY=VALUE")
     kept = [re.sub(r"\$\(([^)]*)\)", r"${\1}", text) for text in words if name(text) not in OWN]
     folders = config_dir or values.get("config_dir")
-    if wrong := [text for text in kept if RESOLVER.search(text) or name(text).startswith("hydra")]:
+    if wrong := [text for text in kept if FOREIGN.search(text)]:
         raise UsageError(f"{at}: {wrong[0]}: is no KEY=VALUE of a run")
     made: Any = OmegaConf.to_container(configuration.load(kept, folders))
     made.pop("recipe")

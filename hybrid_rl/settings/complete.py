@@ -58,7 +58,7 @@ def complete(
     """The keys of `raw` at or below `roots`, and those that they refer to; parts are complete.
 
     raw: what was composed, with its references. typed: keys of the user, which are left out where
-    a part has no such field: `check_read` names them.
+    a part has no such field; `refusal` is the line about them.
     """
     _drop(raw, typed)
     read: dict[str, Any] = {}

@@ -265,6 +265,7 @@ def test_what_does_not_fit_is_one_line(source, tmp_path, monkeypatch, capfd, giv
     [
         (["env.physics=$(oc.env:HOME)"], "is no KEY=VALUE of a run"),
         (["hydra.run.dir=elsewhere"], "is no KEY=VALUE of a run"),
+        (["task=../../theirs"], "is no KEY=VALUE of a run"),
         (3, "must be a list of KEY=VALUE"),
         (["env._target_=subprocess.Popen"], "is no part of hybrid_rl"),
         (None, "keeps no recipe; train it again"),
