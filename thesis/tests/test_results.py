@@ -48,7 +48,7 @@ def test_every_claim_has_a_picture_numbers_and_commands(entries):
         assert ("brief" in entry) != (entry["verdict"] == "holds"), name
         if entry["verdict"] != "nothing to test":
             assert (ROOT / "docs" / atlas.picture(entry)).is_file(), name
-            assert entry["commands"], name
+            assert entry["command"], name
             assert entry["results"], name
 
 
