@@ -13,7 +13,7 @@ from scripts.pages.machines import machine
 from scripts.pages.values import RESULTS, evaluated, read
 
 DOCS = RESULTS.parent
-MORE = "Numbers, seeds, machines, a command"
+MORE = "Numbers, seeds, machines"
 VERDICTS = ("holds", "holds in part", "does not hold", "nothing to test")
 INTRODUCTION = """# Atlas: every figure and table of the thesis
 
@@ -21,7 +21,7 @@ INTRODUCTION = """# Atlas: every figure and table of the thesis
 
 I. Abraham, *Optimal Experimental Learning and Infinite Linear Embeddings*, Northwestern
 University, 2020: what each figure and table claims, and what we found. A picture leads to the
-page with bands, settings and all commands. How the baselines were tuned: [printed, and
+page with bands, settings and commands. How the baselines were tuned: [printed, and
 ours](results/printed.md).
 """
 
@@ -70,31 +70,6 @@ def _items(data: Any) -> Iterator[tuple[str, Any]]:
                 yield from _items(value)
 
 
-def section(page: str) -> str:
-    """The text of FILE.md#ANCHOR, to the next heading of its level."""
-    file, _, anchor = page.partition("#")
-    parts = re.split(r"^(#+ .+)$", (DOCS / file).read_text(encoding="utf-8"), flags=re.MULTILINE)
-    text, level = "", 0
-    for heading, body in zip(parts[1::2], parts[2::2], strict=True):
-        marks, _, title = heading.partition(" ")
-        if level and len(marks) <= level:
-            break
-        if level or _anchor(title) == anchor:
-            level = level or len(marks)
-            text += heading + body
-    if not level:
-        raise ValueError(f"no section: {page}")
-    return text
-
-
-def command(page: str, words: str) -> str:
-    """The first line with these words among the commands of a section."""
-    for line in section(page).splitlines():
-        if re.match(r"\s*python ", line) and words in line:
-            return line.strip()
-    raise ValueError(f"no command with {words!r} in {page}")
-
-
 def picture(entry: dict[str, Any]) -> str:
     """Path of an entry's picture, relative to docs, or nothing."""
     names = [f"{stem}.png" for stem in entry["results"]]
@@ -127,8 +102,6 @@ def entry_text(name: str, entry: dict[str, Any]) -> str:
     text += f"**{verdict}** {shows} [More]({entry['page']})\n"
     if entry["results"]:
         text += f"\nNumbers: {sources(entry)}.\n"
-    if "command" in entry:
-        text += f"\n```\n{command(entry['page'], entry['command'])}\n```\n"
     return text
 
 

@@ -19,8 +19,8 @@ prose. {row} is what `rows` has for the row's label or for its longest beginning
 numbers. A row without a label has the one above it, and the second column is part of the label if
 it has no header.
 
-Before a table that is written whole: <!-- doctor audited --> for what the doctor prints,
-<!-- leaves --> for which_method.yaml, and <!-- community --> for the files of the folder community.
+Before a table that is written whole: <!-- leaves --> for which_method.yaml, and
+<!-- community --> for the files of the folder community.
 
 A text or a cell may show the first of the expression's numbers only. They are written with the
 decimals that stand there.
@@ -34,7 +34,7 @@ from typing import Any
 
 import yaml
 
-from scripts.pages import community, examined, leaves
+from scripts.pages import community, leaves
 from scripts.pages.values import evaluated
 
 TABLES = Path(__file__).resolve().parents[2] / "docs" / "tables.yaml"
@@ -42,7 +42,6 @@ NUMBER = re.compile(r"(?<![\w.])(?:(?<!\d )-)?(?:\d{1,3}(?:,\d{3})+|\d+)(?:\.\d+
 INLINE = re.compile(r"(<!-- = )(.+?)( -->)(.*?)(<!-- / -->)", re.DOTALL)
 TABLE = re.compile(r"(<!-- table (\S+) -->\n)((?:\|.*\n){3,})")
 WRITERS: dict[str, Callable[..., str]] = {  # word of a mark -> the table of the words after it
-    "doctor": examined.table,
     "leaves": leaves.table,
     "community": community.table,
 }
