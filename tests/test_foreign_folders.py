@@ -156,9 +156,9 @@ HEAD = "exp_name,env_name,seed,metric,env_step,value\n"
 @pytest.mark.parametrize(
     ("rows", "words"),
     [
-        ("a,pendulum,0,m,1,1e308\n", "no row's metric is m"),
-        ("a,pendulum,0,m,1e400,1\n", "no row's metric is m"),
-        ("a,pendulum,0,m,nan,1\n", "no row's metric is m"),
+        ("a,pendulum,0,m,1,1e308\n", "must have rows of the metric m, env_name of pendulum"),
+        ("a,pendulum,0,m,1e400,1\n", "must have rows of the metric m, env_name of pendulum"),
+        ("a,pendulum,0,m,nan,1\n", "must have rows of the metric m, env_name of pendulum"),
         ("a,pendulum,0,m,1,nan\na,pendulum,0,m,1,2\n", ""),
         ("a,pendulum,0,m,1," + "x" * 2_000_000, "must have the columns"),
         ("a,pendulum," + "9" * 5000 + ",m,1,1\n", "must have the columns"),

@@ -17,7 +17,6 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.analysis.dataframes import pandas
 from hybrid_rl.analysis.logged import Learner, common, count_failures, learners, swept
 from hybrid_rl.analysis.results import NOT_METRICS, RunFolder, differences, find, short
 from hybrid_rl.errors import UsageError
@@ -50,11 +49,12 @@ class Curve:
 
     def frame(self) -> Any:
         """A pandas.DataFrame: a row per value, columns task, label, seed, metric, x, value."""
-        frame = pandas().DataFrame
+        import pandas
+
         s, g = np.nonzero(np.isfinite(self.each))
         values = {"seed": np.array(self.seeds)[s], "metric": self.metric}
         values |= {"x": self.x[g], "value": self.each[s, g]}
-        return frame({"task": self.task, "label": self.label} | values)
+        return pandas.DataFrame({"task": self.task, "label": self.label} | values)
 
 
 def curves(

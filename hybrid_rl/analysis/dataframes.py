@@ -1,12 +1,10 @@
 """Rows and curves of runs as tables of pandas, which is no dependency."""
 
 from collections.abc import Iterable
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from hybrid_rl.analysis.results import RunFolder, find
-from hybrid_rl.errors import install
 from hybrid_rl.run.folder import members
 
 
@@ -23,21 +21,13 @@ def metrics(runs: str | Path | Iterable[str | Path]) -> Any:
         UsageError: if there is no run, or a damaged one.
         ImportError: without pandas.
     """
-    frame = pandas().DataFrame
+    import pandas
+
     folders = [RunFolder(path) for path in find(runs)]
     named = [({"run": str(one.path), **_values(one.path)}, one.rows) for one in folders]
-    return frame([name | row for name, rows in named for row in rows])
+    return pandas.DataFrame([name | row for name, rows in named for row in rows])
 
 
 def _values(run: Path) -> dict[str, float]:
     """What sets a run apart in the sweep that it belongs to, by key; {} for any other run."""
     return members(run.parent).get(run, {})
-
-
-def pandas() -> Any:
-    """The module; an ImportError with the command that installs it if there is none."""
-    try:
-        return import_module("pandas")
-    except ImportError as error:
-        line = f"needs pandas, which is not installed; {install('pandas')}"
-        raise ImportError(line) from error

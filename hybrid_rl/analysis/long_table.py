@@ -10,7 +10,7 @@ exp_name is the label of the curve, env_name the task, env_step the number of de
 import csv
 import io
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -27,8 +27,7 @@ FLOAT32 = float(np.finfo(np.float32).max)  # greatest number that is drawn
 
 def text(drawn: Sequence[Curve], x: str) -> str:
     """The text of the table; a missing value has no row."""
-    if x != "step":
-        raise UsageError(f"x={x}: a table is over decisions; give x=step, or a picture as out")
+    _check_over_decisions(x)
     out = io.StringIO()
     rows = csv.writer(out, lineterminator="\n")
     rows.writerow(COLUMNS)
@@ -41,11 +40,14 @@ def text(drawn: Sequence[Curve], x: str) -> str:
     return out.getvalue()
 
 
-def read(file: str | Path, metric: str, tasks: Iterable[str], smooth: float = 0.0) -> list[Curve]:
+def read(
+    file: str | Path, metric: str, tasks: Collection[str], x: str = "step", smooth: float = 0.0
+) -> list[Curve]:
     """The curves of `metric` in a table with these columns, labelled by exp_name and its file.
 
-    tasks: of the runs that they are drawn beside.
+    tasks: of the runs that they are drawn beside, over x.
     """
+    _check_over_decisions(x)
     found: dict = defaultdict(lambda: defaultdict(list))
     try:
         rows = csv.DictReader(io.StringIO(text_of(Path(file)).removeprefix("\ufeff")))
@@ -58,15 +60,20 @@ def read(file: str | Path, metric: str, tasks: Iterable[str], smooth: float = 0.
         raise UsageError(f"others={error}") from error
     except (KeyError, ValueError, TypeError, csv.Error) as error:
         raise UsageError(f"others={file}: must have the columns {', '.join(COLUMNS)}") from error
-    if not found:
-        raise UsageError(f"others={file}: no row's metric is {NAMES.get(metric, metric)}")
-    if strange := sorted({task for task, _ in found} - set(tasks)):
-        has = ", ".join(sorted(set(tasks)))
-        raise UsageError(f"others={file}: env_name {strange[0]} is no task of the runs, {has}")
-    members = {
-        (task, f"{name} ({Path(file).name})"): [
-            Learner(Path(file), seed, *np.array(sorted(points)).T) for seed, points in each.items()
-        ]
+    if not found or {task for task, _ in found} - set(tasks):
+        wanted = f"the metric {NAMES.get(metric, metric)}, env_name of {', '.join(sorted(tasks))}"
+        raise UsageError(f"others={file}: must have rows of {wanted}, and of no other task")
+    return [
+        curve_of(
+            (task, f"{name} ({Path(file).name})"),
+            metric,
+            [Learner(Path(file), seed, *np.array(sorted(p)).T) for seed, p in each.items()],
+            smooth,
+        )
         for (task, name), each in found.items()
-    }
-    return [curve_of(key, metric, learners, smooth) for key, learners in members.items()]
+    ]
+
+
+def _check_over_decisions(x: str) -> None:
+    if x != "step":
+        raise UsageError(f"x={x}: tables are over decisions, x=step")

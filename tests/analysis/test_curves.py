@@ -225,7 +225,7 @@ def test_smoothing_is_a_moving_mean_of_that_many_steps(tmp_path):
 def test_wall_time_is_an_x(tmp_path):
     (curve,) = curves(run(tmp_path / "a", [5.0, 6]), x="wall_s")
     assert curve.x.tolist() == [0.1, 0.2]
-    with pytest.raises(UsageError, match="x=hours: must be step, wall_s, or a number"):
+    with pytest.raises(UsageError, match="x=hours: not in "):
         curves(tmp_path, x="hours")
 
 
@@ -239,7 +239,7 @@ def test_a_swept_number_is_an_x(tmp_path):
     assert (curve.x.tolist(), curve.seeds) == ([2, 5, 10], (0, 1))
     assert curve.each.tolist() == [[3, 4, 7], [5, 6, 9]]
     assert curve.iqm.tolist() == [4, 5, 8]
-    with pytest.raises(UsageError, match="x=task: must be step, wall_s, or a number"):
+    with pytest.raises(UsageError, match=r"x=task: must be a number; .* has hopper"):
         curves(tmp_path, x="task")
 
 

@@ -31,6 +31,7 @@ from hybrid_rl.thesis.studies.contacts import (
     stuck,
     trials,
 )
+from hybrid_rl.thesis.studies.dots import dots
 from hybrid_rl.thesis.studies.falls import wilson
 
 KINDS = {  # which measurements y [S, T] count
@@ -92,7 +93,7 @@ def draw_poses(numbers: dict[str, Any]) -> Any:
         rows.points(axes, each, marks if axes is errors else ())
         plain_log(axes.xaxis, narrow=True)
     each = {label: np.array(one["found"]["each"], float) for label, one in methods.items()}
-    rows.trials(waits, each, times[-1])
+    dots(waits, each, times[-1])
     legend_outside(errors)
     waits.xaxis.set_major_locator(MaxNLocator(5))
     waits.set(title="Found after [s], grey: never", xlim=(0, None))

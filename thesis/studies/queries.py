@@ -18,8 +18,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.analysis.curves import band_of, banded, curves, improvement
-from hybrid_rl.analysis.recorded import labels
-from hybrid_rl.analysis.results import RunFolder, find
+from hybrid_rl.analysis.results import RunFolder, find, labels
 from hybrid_rl.errors import UsageError
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run.folder import parse_config
