@@ -9,7 +9,7 @@ from foreign import METRIC, ROW, made, no_plain_file, refused
 from tiny import call, only_line
 
 from hybrid_rl import figures
-from hybrid_rl.analysis import long_table
+from hybrid_rl.analysis import tables
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
 from hybrid_rl.errors import UsageError
@@ -180,7 +180,7 @@ def test_a_table_of_others_is_read_within_limits(tmp_path, rows, words):
     if rows == "large":
         os.truncate(file, 10**9)
     if not words:
-        assert [one.each.tolist() for one in long_table.read(file, "m", ["pendulum"])] == [[[2]]]
+        assert [one.each.tolist() for one in tables.read(file, "m", ["pendulum"])] == [[[2]]]
         return
     with pytest.raises(UsageError, match=f"^others={file}: .*{words}"):
-        long_table.read(file, "m", ["pendulum"])
+        tables.read(file, "m", ["pendulum"])

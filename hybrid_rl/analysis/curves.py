@@ -49,7 +49,7 @@ class Curve:
 
     def frame(self) -> Any:
         """A pandas.DataFrame: a row per value, columns task, label, seed, metric, x, value."""
-        import pandas
+        import pandas  # pyright: ignore[reportMissingImports]: an extra
 
         s, g = np.nonzero(np.isfinite(self.each))
         values = {"seed": np.array(self.seeds)[s], "metric": self.metric}
@@ -122,16 +122,6 @@ def band(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     draws = np.random.default_rng(0).integers(n, size=(RESAMPLES, n))
     low, high = np.percentile([iqm(values[draw]) for draw in draws], [2.5, 97.5], axis=0)
     return low, high
-
-
-def banded(values: np.ndarray) -> list[Any]:
-    """The IQM and the ends of its band, over the first axis: [n, ...] -> three of [...]."""
-    return [iqm(values), *band(values)]
-
-
-def band_of(values: np.ndarray) -> dict[str, Any]:
-    """What `banded` returns, as the JSON of a picture has it."""
-    return dict(zip(("iqm", "low", "high"), banded(values), strict=True))
 
 
 def format_number(value: float) -> str:

@@ -7,7 +7,7 @@ settings (hybrid_rl.analysis.curves). Several metrics, such as
 metric=train/return,planner/mode_insertion_gradient, are one row of panels each. x=wall_s plots over
 time, x=KEY over a number that was swept, such as num_demonstrations. runs=FILE.json redraws a
 figure from its JSON. out=FILE.csv writes a table instead, a value of a seed in each row, with the
-columns exp_name, env_name, seed, metric, env_step, value (hybrid_rl.analysis.long_table);
+columns exp_name, env_name, seed, metric, env_step, value (hybrid_rl.analysis.tables);
 others=FILE.csv draws the curves of such a table, of another library's runs, beside these.
 
 The summary has the last value, the mean over the run (the area under the curve), the decisions to
@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
-from hybrid_rl.analysis import long_table
+from hybrid_rl.analysis import tables
 from hybrid_rl.analysis.curves import (
     Curve,
     area,
@@ -63,7 +63,7 @@ def figure(
         for name in map(str.strip, metric.split(",")):
             ours = curves(runs, name, x, group, smooth)
             tasks = {curve.task for curve in ours}
-            drawn += ours + (long_table.read(others, name, tasks, x, smooth) if others else [])
+            drawn += ours + (tables.read(others, name, tasks, x, smooth) if others else [])
         numbers = {
             "metric": metric,
             "x": x,
@@ -138,7 +138,7 @@ def comparisons(drawn: Sequence[Curve]) -> list[dict[str, Any]]:
 
 def table(numbers: dict[str, Any]) -> str:
     """The curves as text of a long table."""
-    return long_table.text(from_numbers(numbers), numbers["x"])
+    return tables.text(from_numbers(numbers), numbers["x"])
 
 
 def to_numbers(curve: Curve) -> dict[str, Any]:

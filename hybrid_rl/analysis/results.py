@@ -19,7 +19,7 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.run.files.reading import Loader, json_file, lines, yaml_file
 from hybrid_rl.run.logs.records import COORDINATES, WORD, arrays, flatten_keys, row_of, summary_of
 from hybrid_rl.settings.complete import nearest
-from hybrid_rl.settings.values import SECTIONS
+from hybrid_rl.settings.values import PAID, SECTIONS
 
 NOT_METRICS = (*COORDINATES, WORD)  # of a row; every other name is a metric
 # Keys in which runs of the same settings may differ: which learners they hold, how long they run,
@@ -29,6 +29,7 @@ NOT_SETTINGS = {
     *("eval_every", "eval_episodes", "eval_modes", "checkpoint_every", "checkpoint_replay"),
     *("compile_cache", "version", "distributed", "logger", "physics"),
 }
+BUILT = (*SECTIONS, *PAID)  # groups from which a run is built; the others are their parts
 IMPLEMENTATION = ".physics"  # ending of the keys that choose one of the same equations
 UNSET, SET = "unset", "set"  # for a key that only some of the runs have, and for a group of keys
 MOST_KEYS, MOST_CHARACTERS = 3, 40  # of a label; beyond that it is a letter
@@ -164,27 +165,27 @@ def redrawn(
 def differences(runs: Sequence[RunFolder], expected: Sequence[str] = ()) -> list[dict[str, str]]:
     """For each run the settings in which the runs differ: key -> value, as words.
 
-    A value that occurs several times, as in the parts that others refer to, counts once, by its
-    shortest key: the one that a user overrides. A single value at the root counts if all runs have
-    it. expected: keys that may differ, with all settings that have the same values.
+    Groups from which a run is built are compared, and single values at the root that all runs
+    have. A value that occurs several times, as in the parts to which these refer, counts once, by
+    its shortest key: the one that a user overrides. expected: keys that may differ, with all
+    settings that have the same values.
     """
     settings = [run.settings for run in runs]
     names = {name for key in expected for each in settings for name in _matches(each, key)}
     known = {_column(settings, name) for name in names | set(expected)}
-    differ = {
-        key: column
-        for key in sorted(set().union(*settings))
-        if len(set(column := _column(settings, key))) > 1
-        and column not in known
-        and key not in NOT_SETTINGS
-        and not key.endswith(IMPLEMENTATION)
-        and (_in_a_part(settings, key) if "." in key else UNSET not in column)
+    columns = {key: _column(settings, key) for key in set().union(*settings)}
+    differ = {key: c for key, c in columns.items() if len(set(c)) > 1 and c not in known}
+    compared = {
+        (_last(key), column)
+        for key, column in differ.items()
+        if _is_compared(key, settings)
+        and ("." in key or UNSET not in column)
+        and not (_is_of_some(column) and any(parent in differ for parent in _parents(key)))
     }
     shortest: dict[tuple[str, tuple[str, ...]], str] = {}
-    for key in sorted(differ, key=lambda key: (key.count("."), len(key))):
-        column = differ[key]
-        if not (UNSET in column and any(parent in differ for parent in _parents(key))):
-            shortest.setdefault((key.rpartition(".")[2], column), key)
+    for key in sorted(differ, key=lambda key: (key.count("."), len(key), key)):
+        if (name := (_last(key), differ[key])) in compared:
+            shortest.setdefault(name, key)
     return [
         {key.removesuffix("._target_"): column[i] for (_, column), key in sorted(shortest.items())}
         for i in range(len(runs))
@@ -234,17 +235,29 @@ def _letters(number: int) -> str:
 
 def _column(settings: Sequence[Mapping[str, Any]], key: str) -> tuple[str, ...]:
     def one(each: Mapping[str, Any]) -> str:
-        if key in each:
-            return _as_word(key, each[key])
+        for name in (key, f"{key}._target_"):
+            if name in each:
+                return _as_word(name, each[name])
         return SET if any(name.startswith(f"{key}.") for name in each) else UNSET
 
     return tuple(map(one, settings))
 
 
-def _in_a_part(settings: Sequence[Mapping[str, Any]], key: str) -> bool:
-    """Whether a key is one of a part, or of a section of the configuration."""
-    root = key.partition(".")[0]
-    return root in SECTIONS or any(f"{root}._target_" in each for each in settings)
+def _is_compared(key: str, settings: Sequence[Mapping[str, Any]]) -> bool:
+    """Whether a key changes what a run learns: of a group, that the run was built from it."""
+    root, *more = key.split(".")
+    whole = any(name.startswith("controllers.") for each in settings for name in each)
+    built = not more or not whole or root in BUILT
+    return built and key not in NOT_SETTINGS and not key.endswith(IMPLEMENTATION)
+
+
+def _is_of_some(column: tuple[str, ...]) -> bool:
+    """Whether some runs lack a key, and the others have the same value."""
+    return UNSET in column and len(set(column)) == 2
+
+
+def _last(key: str) -> str:
+    return key.rpartition(".")[2]
 
 
 def _parents(key: str) -> list[str]:

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hybrid_rl.analysis import long_table
+from hybrid_rl.analysis import tables
 from hybrid_rl.analysis.curves import area, band, curves, improvement, iqm, steps_to
 from hybrid_rl.analysis.learning_curves import FEW, comparisons, figure, summary
 from hybrid_rl.analysis.results import find
@@ -282,7 +282,7 @@ def test_the_page_makes_a_table_of_what_stable_baselines_saves(tmp_path, monkeyp
         np.savez(tmp_path / f"logs/{seed}/evaluations.npz", **saved)
     page = (Path(__file__).parents[2] / "docs" / "faq.md").read_text(encoding="utf-8")
     exec(page.split("EvalCallback")[1].split("```python\n")[1].split("```")[0], {})
-    (got,) = long_table.read("sb3.csv", "eval/return", ["halfcheetah"])
+    (got,) = tables.read("sb3.csv", "eval/return", ["halfcheetah"])
     assert (got.label, sorted(got.seeds)) == ("SAC of SB3 (sb3.csv)", [3, 4])
     np.testing.assert_allclose(sorted(got.each.tolist()), [[1.5, 3], [1.5, 4]])
 

@@ -13,7 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from tiny import call
 
 from hybrid_rl import figures
-from hybrid_rl.analysis import long_table
+from hybrid_rl.analysis import tables
 from hybrid_rl.analysis.curves import Curve, iqm
 from hybrid_rl.analysis.learning_curves import figure, from_numbers, plot, summary, to_numbers
 from hybrid_rl.analysis.style import BLUE, COLOURS, GREEN
@@ -269,7 +269,7 @@ def test_a_table_of_others_is_drawn_beside_the_runs(tmp_path, monkeypatch):
     """What was written is read back, also where a seed lacks a value."""
     ours, theirs = curve(points=3, metric="eval/return"), curve(points=4, metric="eval/return")
     theirs.each[2, 1] = np.nan
-    (tmp_path / "sb3.csv").write_text(long_table.text([theirs], "step"))
+    (tmp_path / "sb3.csv").write_text(tables.text([theirs], "step"))
     monkeypatch.setattr("hybrid_rl.analysis.learning_curves.curves", lambda *given: [ours])
     given = {"runs": "a", "metric": "eval/return", "others": str(tmp_path / "sb3.csv")}
     first, got = from_numbers(figure(**given)[1])

@@ -24,7 +24,7 @@ from typing import Annotated, Any
 
 from hybrid_rl.cli.arguments import one_of, whole
 from hybrid_rl.thesis.studies import contact_frames, contact_maps_picture, contact_poses
-from hybrid_rl.thesis.studies.significant import rounded
+from hybrid_rl.thesis.studies.numbers import rounded
 
 DRAWN = {"pose": contact_poses.draw_poses, "absence": contact_poses.draw_absence}
 LINES = {

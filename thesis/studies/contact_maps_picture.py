@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.analysis.curves import band_of, banded, plural
+from hybrid_rl.analysis.curves import plural
 from hybrid_rl.analysis.style import blank, legend_outside, line_styles, words
 from hybrid_rl.beliefs.maps import learned
 from hybrid_rl.errors import UsageError
@@ -20,6 +20,7 @@ from hybrid_rl.thesis.studies.contacts import (
     touched_all,
     trials,
 )
+from hybrid_rl.thesis.studies.numbers import band_of, banded
 
 NAMES = {
     "objects": "objects touched",

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.special import digamma
 
 from hybrid_rl.analysis import rows
-from hybrid_rl.analysis.curves import band, band_of, plural
+from hybrid_rl.analysis.curves import band, plural
 from hybrid_rl.analysis.style import (
     GREY,
     blank,
@@ -33,6 +33,7 @@ from hybrid_rl.thesis.studies.contacts import (
 )
 from hybrid_rl.thesis.studies.dots import dots
 from hybrid_rl.thesis.studies.falls import wilson
+from hybrid_rl.thesis.studies.numbers import band_of
 
 KINDS = {  # which measurements y [S, T] count
     "all": lambda y: y >= 0,

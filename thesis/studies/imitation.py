@@ -18,7 +18,7 @@ from typing import Annotated, Any
 from hybrid_rl.cli.arguments import one_of, whole
 from hybrid_rl.errors import UsageError
 from hybrid_rl.thesis.studies import backflip_picture, queries_picture
-from hybrid_rl.thesis.studies.significant import rounded
+from hybrid_rl.thesis.studies.numbers import rounded
 
 DRAWN = {
     "queries": queries_picture.picture,

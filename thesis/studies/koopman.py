@@ -27,7 +27,7 @@ from hybrid_rl.thesis.studies import (
     oscillator,
     tracking,
 )
-from hybrid_rl.thesis.studies.significant import rounded
+from hybrid_rl.thesis.studies.numbers import rounded
 
 DRAWN = {
     "falls": falls_picture.draw_information,

@@ -1,4 +1,4 @@
-"""Learning curves as a long table, one value of one seed in a row.
+"""Curves and rows of runs as tables. A long table has a row for each value of a seed.
 
     exp_name,env_name,seed,metric,env_step,value
 
@@ -10,15 +10,18 @@ exp_name is the label of the curve, env_name the task, env_step the number of de
 import csv
 import io
 from collections import defaultdict
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from hybrid_rl.analysis.curves import Curve, curve_of
 from hybrid_rl.analysis.logged import Learner
+from hybrid_rl.analysis.results import RunFolder, find
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.files.reading import text as text_of
+from hybrid_rl.run.folder import members
 
 COLUMNS = ("exp_name", "env_name", "seed", "metric", "env_step", "value")
 NAMES = {"eval/return": "avg_return"}
@@ -72,6 +75,28 @@ def read(
         )
         for (task, name), each in found.items()
     ]
+
+
+def metrics(runs: str | Path | Iterable[str | Path]) -> Any:
+    """A pandas.DataFrame of all rows of runs: run, step, seed, wall_s, and a column per metric.
+
+        table = metrics("runs/hopper/sac/TIME")
+        table.dropna(subset="eval/return").pivot(index="step", columns="seed", values="eval/return")
+
+    A row has NaN in what it did not log. runs: folders, or a pattern as of `figures`. Of a sweep in
+    one program there is also a column for each of its keys, such as policy_learner.discount.
+
+    Raises:
+        UsageError: if there is no run, or a damaged one.
+        ImportError: without pandas.
+    """
+    import pandas  # pyright: ignore[reportMissingImports]: an extra
+
+    table = []
+    for path in find(runs):
+        swept = members(path.parent).get(path, {})  # what sets it apart in its sweep
+        table += [{"run": str(path), **swept, **row} for row in RunFolder(path).rows]
+    return pandas.DataFrame(table)
 
 
 def _check_over_decisions(x: str) -> None:
