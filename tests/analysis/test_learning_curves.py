@@ -219,13 +219,6 @@ def test_a_picture_is_redrawn_from_its_numbers(tmp_path):
     assert source.read_bytes() == before
 
 
-def test_a_file_without_curves_is_refused(tmp_path, capsys):
-    (tmp_path / "c.json").write_text("{}")
-    arguments = f"runs={tmp_path / 'c.json'}", f"out={tmp_path / 'c.png'}"
-    assert call(lambda: command.run(figures.main), *arguments) == 2
-    assert "c.json: has no numbers of this study" in capsys.readouterr().err
-
-
 def test_the_summary_compares_and_counts_who_reaches_the_threshold():
     """Up to the last point that all seeds have; then the notes."""
     one, two = curve(label="a", points=5), replace(curve(label="b", scale=2.5), notes=("a note",))
