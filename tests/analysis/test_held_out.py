@@ -16,6 +16,7 @@ from hybrid_rl.analysis import held_out
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.models.gaussian import Gaussian
+from hybrid_rl.run.saved import load
 from hybrid_rl.types import Params, Spec
 
 
@@ -58,7 +59,7 @@ def test_the_study_measures_each_seed_on_both_kinds_of_decisions(folder: Path) -
 
 def test_held_out_decisions_are_transitions_of_the_task(folder: Path) -> None:
     """The pendulum's own dynamics lead from each observation to the next one, for both kinds."""
-    data = held_out.held_out([held_out.restored(folder)], 50)
+    data = held_out.held_out([load(folder, "runs")], 50)
     assert sorted(data) == sorted(held_out.SETS)
     for obs, action, after in data.values():
         assert obs.shape == (50, 3)
@@ -73,4 +74,4 @@ def test_a_run_without_a_model_is_refused(
     tiny.run(tmp_path / "sac", "algo=sac", "total_steps=100")
     capfd.readouterr()
     assert call(lambda: command.run(figures.main), "study=held_out", f"runs={tmp_path}/sac") == 2
-    assert "has no learned model" in only_line(capfd)
+    assert "needs runs of one task, each with a learned model" in only_line(capfd)
