@@ -43,9 +43,7 @@ def _named(tree: PyTree) -> list[tuple[str, jax.Array]]:
     """(name, leaf) in the order of the tree, such as ("learners.sac.params", ...)."""
     pairs = jax.tree_util.tree_flatten_with_path(tree)[0]
     names = [quote(jax.tree_util.keystr(path, simple=True, separator=".")) for path, _ in pairs]
-    if len(set(names)) < len(names):
-        twice = sorted(name for name in set(names) if names.count(name) > 1)
-        raise ValueError(f"leaves of one state share a name: {twice}")
+    assert len(set(names)) == len(names), "leaves of one state share a name"
     return [(name or "state", leaf) for name, (_, leaf) in zip(names, pairs, strict=True)]
 
 
