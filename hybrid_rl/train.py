@@ -25,7 +25,7 @@ import signal
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, TypedDict, Unpack
 
 import numpy as np
 from hydra.core.hydra_config import HydraConfig
@@ -80,40 +80,27 @@ class Result(dict[str, Any]):
         return trained.of(self._run, self.folder)
 
 
-@overload
-def train(
-    method: Sequence[str] | DictConfig = (),
-    *,
-    config_dir: str | Path | None = None,
-    on_row: OnRow | None = None,
-    progress: bool = True,
-) -> Result: ...
+class OfAgent(TypedDict, total=False):
+    """Settings of a run of an agent; run.assembled says what a key that is left out means."""
 
-
-@overload
-def train(
-    method: Agent,
-    *,
-    total_steps: int,
-    seed: int = 0,
-    num_seeds: int = 1,
-    run_dir: str | Path | None = None,
-    name: str | None = None,
-    log_every: int | None = None,
-    eval_every: int | None = None,
-    eval_episodes: int = 10,
-    checkpoint_every: int | None = None,
-    on_row: OnRow | None = None,
-    progress: bool = True,
-) -> Result: ...
+    total_steps: int
+    seed: int
+    num_seeds: int
+    run_dir: str | Path | None
+    name: str | None
+    log_every: int | None
+    eval_every: int | None
+    eval_episodes: int
+    checkpoint_every: int | None
 
 
 def train(
     method: Sequence[str] | DictConfig | Agent = (),
     *,
+    config_dir: str | Path | None = None,
     on_row: OnRow | None = None,
     progress: bool = True,
-    **settings: Any,
+    **settings: Unpack[OfAgent],
 ) -> Result:
     """Train `method` to its end; returns what summary.json holds.
 
@@ -126,12 +113,12 @@ def train(
     Args:
         method: what follows the command, as a list; a configuration of `compose`; or an agent,
             which continues where run_dir holds its checkpoints.
+        config_dir: of a list, a folder as for `--config-dir`.
         on_row: called with each new row of metrics.jsonl, a dictionary. Once it returns False, or
             raises, the run ends with a checkpoint, and "finished" of the result is False.
         progress: False prints nothing.
-        settings: of a list alone, config_dir, a folder as for `--config-dir`; of an agent alone
-            (hybrid_rl.run.assembled.run_of): total_steps, seed, num_seeds, run_dir, name,
-            log_every, eval_every, eval_episodes, checkpoint_every.
+        settings: of an agent alone (hybrid_rl.run.assembled.run_of): total_steps, seed, num_seeds,
+            run_dir, name, log_every, eval_every, eval_episodes, checkpoint_every.
 
     Raises:
         KeyboardInterrupt: after Ctrl-C and a checkpoint.
@@ -141,26 +128,20 @@ def train(
     """
     output = Output(on_row, progress)
     if isinstance(method, Agent):
-        run = assembled.run_of(method, **settings)
+        values: dict[str, Any] = {**settings}
+        run = assembled.run_of(method, **values)
         result = Result(launch.train_built(run, interrupt.as_call, output), run)
     else:
+        if settings:
+            texts = ", ".join(f'"{key}={value}"' for key, value in settings.items())
+            raise UsageError(f"train: keywords are for an agent; write train([{texts}, ...])")
         given = {} if isinstance(method, DictConfig) else overrides.typed_values(method)
-        runs = _composed(method, **settings)
+        runs = members.load(method, config_dir)
         result = Result(launch.train(runs, given, interrupt.as_call, output))
     if result["signal"] is not None:
         signal.raise_signal(result["signal"])
     output.raise_problem()
     return result
-
-
-def _composed(
-    method: Sequence[str] | DictConfig, config_dir: str | Path | None = None, **others: Any
-) -> list[members.Member]:
-    """The runs of a list or a configuration."""
-    if others:
-        texts = ", ".join(f'"{key}={value}"' for key, value in others.items())
-        raise UsageError(f"train: keywords are for an agent; write train([{texts}, ...])")
-    return members.load(method, config_dir)
 
 
 def _job(config: DictConfig, on_row: OnRow | None = None) -> dict[str, Any]:

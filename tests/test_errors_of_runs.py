@@ -29,7 +29,7 @@ COUNT = "must be a whole number, 1 or more"
 OTHERS = [  # command and its arguments, exit code, words of the line
     ("evaluate", 2, "run, policy: give one of them"),
     ("evaluate policy=cheetah", 2, "policy=cheetah: no such file; choose a file, or one of "),
-    ("evaluate policy={trained}", 2, "is no .npz file; a run's folder is run="),
+    ("evaluate policy={trained}", 2, "trained: no such file; choose a file, or one of "),
     ("evaluate run=nowhere", 2, "run=nowhere: no run folder there"),
     ("evaluate run={begun}", 2, "holds no checkpoint yet"),
     ("evaluate run=nowhere mode=both", 2, "mode=both: choose one of full, policy, planner"),

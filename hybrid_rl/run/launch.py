@@ -47,11 +47,6 @@ def train(
     given: the overrides of the user, key -> value; of a resumed run, whose settings come from its
     folder, only total_steps and precision may differ. handled: `handled(f)` is a context in which
     the first signal calls f(number).
-
-    Raises:
-        UsageError: if a configuration makes no run, or one program cannot train all of them.
-        DivergenceError: if every learner reached NaN or infinity.
-        CheckpointError: if a checkpoint could not be written or read.
     """
     config = members[0].config
     if config.get("distributed"):

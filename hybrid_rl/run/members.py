@@ -56,11 +56,8 @@ def expand_sweep(config: DictConfig, texts: Sequence[str]) -> list[Member]:
     texts, raw = [text for text in texts if not overrides.is_swept(text)], raw_values(config)
     lists, config = flatten_keys(raw.pop("sweep") or {}), config.copy()
     config.sweep = {}
-    given = overrides.typed_values(texts)
     for key, values in lists.items():
         _check_values(raw, key, values)
-        if key in given:
-            raise UsageError(f"{key}={given[key]}: sweep.{key} gives its values; leave one out")
     if lists and config.get("distributed"):
         raise UsageError("distributed=true: trains no sweep; use -m, or one process")
     members = []

@@ -184,8 +184,6 @@ def read(name: str) -> Trained:
     """The policy NAME of the package, or that in a file whose name ends in .npz."""
     file = Path(name) if name.endswith(".npz") else Path("policies", f"{name}.npz")
     prefix, known = f"policy={name}:", f"choose a file, or one of {', '.join(names())}"
-    if not name.endswith(".npz") and Path(name).exists():
-        raise UsageError(f"{prefix} is no .npz file; a run's folder is run={name}")
     try:
         arrays = archive.read(prefix, file, hint=known)
         if archive.ABOUT not in arrays:

@@ -84,11 +84,7 @@ class Session:
             self.progress.note(start.line)
 
     def resume(self) -> None:
-        """Start from the newest sound checkpoint.
-
-        Raises:
-            CheckpointError: if there is none, or it belongs to another run.
-        """
+        """Start from the newest sound checkpoint."""
         self.state, self.gathered, self.record, ends, notes = self.shelf.restore()
         self.progress.step = self.step
         if not self.schedule.checkpoint_replay:
@@ -124,12 +120,7 @@ class Session:
         self.progress.note("stopping, with a checkpoint ...")
 
     def run(self) -> None:
-        """Advance to the end, or until `ask` was called; the last state is always saved.
-
-        Raises:
-            DivergenceError: if the last learner reached NaN or infinity.
-            CheckpointError: if a checkpoint could not be written.
-        """
+        """Advance to the end, or until `ask` was called; the last state is always saved."""
         plan, worlds = self.schedule, self.loop.agent.num_envs
         while not self.finished and self.stop is None:
             if not self.record.unevaluated:

@@ -64,18 +64,16 @@ def _recipe(run_dir: Path, config_dir: str | Path | None) -> list[str]:
     """The words that made the run in a folder, which may come from anybody."""
     config: DictConfig = folder.read(run_dir, "run")
     values: Any = OmegaConf.to_container(config)
-    words: Any = values.get("recipe")
-    folders = config_dir or values.get("config_dir")
-    at, flaw = f"{run_dir / 'config.yaml'}: recipe", ""
-    if words is None:
-        flaw = "is missing; train it again"
-    elif not (isinstance(words, list) and all(isinstance(text, str) for text in words)):
-        flaw = "must be a list of KEY=VALUE"
-    elif wrong := [text for text in words if FOREIGN.search(_referring(text))]:
-        flaw = f"{wrong[0]}: is no KEY=VALUE of a run"
+    words, folders = values.get("recipe"), config_dir or values.get("config_dir")
+    at, flaw, kept = f"{run_dir / 'config.yaml'}: recipe", "", []
+    if isinstance(words, list) and all(isinstance(text, str) for text in words):
+        kept = [_referring(text) for text in words if name(text) not in OWN]
+        if wrong := [text for text in kept if FOREIGN.search(text)]:
+            flaw = f"{wrong[0]}: is no KEY=VALUE of a run"
+    else:
+        flaw = "must be a list of KEY=VALUE; train it again"
     if flaw:
         raise UsageError(f"{at}: {flaw}")
-    kept = [_referring(text) for text in words if name(text) not in OWN]
     try:
         made: Any = OmegaConf.to_container(configuration.load(kept, folders))
     except (OSError, TypeError, RecursionError) as error:  # of a folder, or nested in the words
@@ -118,13 +116,7 @@ def joined(starts: Sequence[Start | None]) -> Start | None:
 
 
 def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:
-    """The new run of a checked configuration, and what it begins with.
-
-    Raises:
-        UsageError: if there is no run in the folder `config.run`, it has no checkpoint, or it does
-            not fit.
-        CheckpointError: if none of its checkpoints is sound.
-    """
+    """The new run of a checked configuration, and what it begins with."""
     if config.get("run") is None:
         return configuration.built(config), None
     with folder.blame_config(Path(str(config.run)), lacking=True):

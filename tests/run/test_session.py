@@ -176,7 +176,7 @@ def finite(folder):
     like = {
         name: jax.ShapeDtypeStruct(tuple(kind["shape"]), kind["dtype"])
         for name, kind in kinds.items()
-        if kind["dtype"] == "float32" and name.startswith("learners")
+        if name.startswith("learners")
     }
     result = checkpoint.restore(folder / "checkpoints", like, step)[1]
     return bool(result) and all(np.isfinite(leaf).all() for leaf in result.values())

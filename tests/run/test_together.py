@@ -133,7 +133,7 @@ def test_a_learner_that_diverges_ends_alone(tmp_path, capfd):
         ("planner.temperature=[0.1,0.2]", "sweep.planner.temperature: sac has no such key"),
         ("episode.sensor_noise=[0.1,0.2]", "as all learners have the same world; use -m"),
         ("seed=[1,2]", "it is no number of a learner or a controller; use -m seed=1,2"),
-        ("num_seeds=[1,2]", "num_seeds=2: sweep.num_seeds gives its values; leave one out"),
+        ("num_envs=[1,2]", "use -m num_envs=1,2"),
     ],
 )
 def test_what_no_program_can_hold_is_refused_in_one_line(key, words, tmp_path, capfd):

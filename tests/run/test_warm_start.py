@@ -128,13 +128,6 @@ def test_a_part_that_the_run_did_not_have_gets_its_networks(source):
     assert made.policy.hidden == [16]
 
 
-def test_another_method_begins_with_what_it_has_in_common(source):
-    """Here the policy and its critic, which soft actor-critic goes on to learn alone."""
-    _, _, state, line = begun(source, "algo=sac")
-    assert "begins with policy and critic of" in line
-    assert same(jax.device_get(state.learners["policy"]), saved(source).learners["policy"])
-
-
 def test_what_was_imagined_is_kept_only_where_nothing_changed(source, monkeypatch):
     seen = []
     monkeypatch.setattr(start, "forgotten", lambda tree: seen.append(1) or tree)
@@ -248,6 +241,8 @@ REFUSED = [  # overrides, words of the line
     ("model.hidden=[8]", "model.hidden was [16] and is [8]: parameters of run="),
     ("env.task=track", "env.task was hover and is track: parameters of run="),
     ("task=pendulum", "and is hybrid_rl.envs.analytic.pendulum.Pendulum"),
+    ("algo=sac", ": parameters of run="),
+    ("critic.layer_norm=false", "critic.layer_norm was True and is False: parameters of run="),
     ("settings=light", "critic.hidden was [16] and is [128, 128]"),
     ("resume={source}", "run, resume: give one of them"),
     ("freeze=[polcy]", "freeze=[polcy]: the method's learners are model, policy"),
@@ -276,7 +271,7 @@ def test_what_does_not_fit_is_one_line(source, tmp_path, monkeypatch, capfd, giv
         (3, "must be a list of KEY=VALUE"),
         (["env._target_=subprocess.Popen"], "is no part of hybrid_rl"),
         (["policy=" + "[" * 5000 + "]" * 5000], r"cannot be composed \(RecursionError\)"),
-        (None, "recipe: is missing; train it again"),
+        (None, "must be a list of KEY=VALUE; train it again"),
     ],
     ids=range(7),
 )
@@ -286,6 +281,14 @@ def test_the_words_of_a_run_are_judged(tmp_path, words, line):
     folder.write(tmp_path, config_of)
     with pytest.raises(UsageError, match=line):
         members.load([f"run={tmp_path}"])
+
+
+def test_where_a_run_wrote_to_is_no_word_of_the_next_one(tmp_path):
+    config_of = config.load(["task=pendulum", "algo=sac"])
+    config_of.recipe = ["task=pendulum", "algo=sac", "run_dir=../elsewhere"]
+    folder.write(tmp_path, config_of)
+    (made,) = members.load([f"run={tmp_path}"])
+    assert (made.config.task, made.config.run_dir) == ("pendulum", None)
 
 
 @pytest.mark.parametrize("kind", ["deep", "long", "group"])

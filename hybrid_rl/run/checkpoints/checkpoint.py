@@ -71,10 +71,7 @@ def save(
 
     Checkpoints beyond `step` are deleted, too: the run was resumed from an earlier one. Only
     checkpoints in `known` are deleted, as another process wrote the others; None: all of them.
-    meta: values that JSON can represent.
-
-    Raises:
-        CheckpointError: if it cannot be written; earlier checkpoints stay.
+    meta: values that JSON can represent. After a CheckpointError earlier checkpoints are as before.
     """
     arrays, kinds = leaves.flatten(state)
     texts = {"meta.json": json.dumps(meta, indent=1), "leaves.json": json.dumps(kinds, indent=0)}
@@ -112,10 +109,6 @@ def restore(
     returns), of all leaves or of some; they are arrays on the default device. notes: one line for
     each checkpoint that was skipped. Another process may write checkpoints to `folder` and delete
     older ones meanwhile.
-
-    Raises:
-        CheckpointError: if none is sound.
-        MisfitError: if the checkpoint lacks a leaf of `like`, or has it in another shape.
     """
     for _ in range(ATTEMPTS):
         checkpoints = _finished(folder)

@@ -48,10 +48,6 @@ def read_part(
     """(step, AgentState [S, ...], notes) of the newest sound checkpoint, or the one at `step`.
 
     part: the field of the state that is read; the others are None.
-
-    Raises:
-        CheckpointError: if none is sound.
-        MisfitError: if it is of another agent, or of other seeds.
     """
     saved = checkpoint.meta(folder).get("seeds", [*seeds])
     if saved != [*seeds]:
@@ -83,11 +79,7 @@ class Store:
     known: set[int] = field(default_factory=set)  # checkpoints that may be deleted
 
     def save(self, state: Any, gathered: Gathered, record: Record) -> None:
-        """Write a checkpoint of the run.
-
-        Raises:
-            CheckpointError: if it could not be written.
-        """
+        """Write a checkpoint of the run."""
         names, array = gathered.pack()
         leaves = {part.name: getattr(state, part.name) for part in fields(state)}
         if not self.replay:
@@ -109,9 +101,6 @@ class Store:
         """(state, metrics since the last row, record, notes) of the newest sound checkpoint.
 
         The replay memory is empty if checkpoints do not hold it. step: of another checkpoint.
-
-        Raises:
-            CheckpointError: if there is none, or it belongs to another run.
         """
         self.known = set(checkpoint.steps(self.folder))
         like = self.loop.shapes().replace(memory=None)
@@ -209,9 +198,6 @@ class Shelf:
         """(state [S, ...], metrics since the last row, record, ends by learner, notes).
 
         All from the newest sound checkpoints of one step; a kill may have left others.
-
-        Raises:
-            CheckpointError: if there is none, or it belongs to another run.
         """
         got = [store.restore() for store in self.stores]
         step = min(record.step for _, _, record, _ in got)

@@ -64,11 +64,7 @@ def lines(file: Path, most: int | None = None) -> Iterator[bytes]:
 
 
 def from_json(content: str | bytes) -> Any:
-    """The value of a text in JSON.
-
-    Raises:
-        ValueError: if it is not JSON, or nested too deeply.
-    """
+    """The value of a text in JSON; ValueError if it is none, or nested too deeply."""
     try:
         return json.loads(content)
     except RecursionError as error:

@@ -48,11 +48,7 @@ class RunLog:
         self._file.close()
 
     def write(self, rows: Sequence[Row]) -> None:
-        """Append rows {"step", "seed", "wall_s", name: number or word, ...}.
-
-        Raises:
-            CheckpointError: before the first row, as `flush`.
-        """
+        """Append rows {"step", "seed", "wall_s", name: number or word, ...}."""
         for row in rows:
             if not self._loggers:
                 self._open()
@@ -83,11 +79,7 @@ class RunLog:
             )
 
     def flush(self) -> int:
-        """Force all rows to the disk; returns the size of metrics.jsonl [bytes], for `rewind`.
-
-        Raises:
-            CheckpointError: if the folder is no longer where it was.
-        """
+        """Force all rows to the disk; returns the size of metrics.jsonl [bytes], for `rewind`."""
         self._check()
         os.fsync(self._file.fileno())
         for logger in self._loggers:
