@@ -243,7 +243,6 @@ USAGE = [  # overrides of train, words of the line
     ("run_dir=", "run_dir=: is empty; give a folder, or leave it out"),
     ("total_steps=2147483648", "total_steps=2147483648: must be at most 2147483647: decisions"),
     ("total_steps=99999999999999999999", "must be at most 2147483647: decisions are counted in"),
-    ("eval_episodes=100000000000", "eval_episodes=100000000000: their worlds would take "),
     ("run_dir=/dev/null/run", "run_dir=/dev/null/run: cannot be written to (Not a directory)"),
 ]
 
