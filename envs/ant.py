@@ -105,4 +105,4 @@ class Ant(Body):
 
 def _state(data: PhysicsState, reward: Array, terminated: Array, speed: Array) -> EnvState:
     obs = jnp.concatenate((data.qpos[2:], data.qvel))
-    return EnvState(data, obs, reward, terminated, jnp.zeros((), bool), {"speed": speed}, {})
+    return EnvState(data, obs, reward, terminated, metrics={"speed": speed})

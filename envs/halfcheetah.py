@@ -85,6 +85,5 @@ def _kneels(body: Physics, data: PhysicsState) -> Array:
 
 
 def _state(data: PhysicsState, reward: Array, speed: Array) -> EnvState:
-    no = jnp.zeros((), bool)
     obs = jnp.concatenate((data.qpos[1:], data.qvel))
-    return EnvState(data, obs, reward, no, no, {"speed": speed}, {})
+    return EnvState(data, obs, reward, metrics={"speed": speed})

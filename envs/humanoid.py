@@ -82,8 +82,8 @@ class Humanoid(Body):
                 self._body.read(data, name) for name in (*OBSERVATION_READS["full"], "cfrc_ext")
             )
             seen += [inertia[1:].ravel(), velocity[1:].ravel(), torque[6:], force[1:].ravel()]
-        no = jnp.zeros((), bool)
-        return EnvState(data, jnp.concatenate(seen), reward, terminated, no, {"speed": speed}, {})
+        obs = jnp.concatenate(seen)
+        return EnvState(data, obs, reward, terminated, metrics={"speed": speed})
 
     def ended(self, obs: Array) -> Array:
         """Whether [] an episode terminates at obs [o], of which it needs the height."""

@@ -184,8 +184,8 @@ class PandaStack:
         metrics = {"success": success, "grasped": grasped, "distance": _norm(block - goal)}
         metrics = {name: value.astype(jnp.float32) for name, value in metrics.items()}
         reward = stage - self.penalty * (_norm(wrench) + _norm(action))
-        no = jnp.zeros((), bool)
-        return EnvState(data, obs, reward, success & self.terminate, no, metrics, info)
+        ended = success & self.terminate
+        return EnvState(data, obs, reward, ended, metrics=metrics, info=info)
 
     def _observation(
         self, tool: Array, block: Array, goal: Array, closed: Array, wrench: Array

@@ -83,7 +83,7 @@ class PlanarLegs(Body):
         if limit is not None:
             seen = jnp.clip(seen, -limit, limit)
         obs = jnp.concatenate((data.qpos[1:], seen))
-        return EnvState(data, obs, reward, terminated, jnp.zeros((), bool), {"speed": speed}, {})
+        return EnvState(data, obs, reward, terminated, metrics={"speed": speed})
 
     def ended(self, obs: Array) -> Array:
         """Whether [] an episode terminates at obs [o]."""

@@ -162,8 +162,7 @@ class SawyerProbe:
         obs = jnp.concatenate([tip[:2], jacobian[:2] @ data.qvel])
         x, y, angle = info["pose"]
         metrics = {"touch": touch, "pose_x": x, "pose_y": y, "pose_angle": angle}
-        no = jnp.zeros((), bool)
-        return EnvState(data, obs, touch, no, no, metrics, info)
+        return EnvState(data, obs, touch, metrics=metrics, info=info)
 
     def distance(self, s: Array, pose: Array | None = None) -> Array:
         """Signed distance [] [m] of s [2] to the nearest surface; `pose` [3] is theta."""

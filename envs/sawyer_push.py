@@ -212,8 +212,8 @@ class SawyerPush:
         parts = (self.state_scale * reach, self.state_scale * left)
         obs = jnp.concatenate((*parts, *self._extra(data, tip, info["velocity"])))
         metrics = {"success": success.astype(jnp.float32), "distance": distance}
-        no = jnp.zeros((), bool)
-        return EnvState(data, obs, reward, success & self.terminate, no, metrics, info)
+        ended = success & self.terminate
+        return EnvState(data, obs, reward, ended, metrics=metrics, info=info)
 
 
 def _disc(key: Array) -> Array:

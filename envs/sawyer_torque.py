@@ -117,8 +117,7 @@ class SawyerTorque:
         error = jnp.linalg.norm(TIP.pose(data.qpos)[0] - now[14:])
         obs = jnp.concatenate((data.qpos, data.qvel, now[:14], later[:14]))
         metrics = {"tip_error": error, "joint_rate": jnp.abs(data.qvel).max()}
-        no = jnp.zeros((), bool)
-        return EnvState(data, obs, -100 * error**2, no, no, metrics, {"count": count})
+        return EnvState(data, obs, -100 * error**2, metrics=metrics, info={"count": count})
 
 
 def asset(damping: str, payload: float = 0.0) -> str:

@@ -155,10 +155,9 @@ class Sprk:
         pose = info["pose"]
         p = turned(data.qpos[:2] - self._plane.middle, pose[2]) + pose[:2]
         obs = jnp.concatenate([p, turned(data.qvel[:2], pose[2])])
-        no = jnp.zeros((), bool)
         x, y, angle = pose
         metrics = {"touch": touch, "pose_x": x, "pose_y": y, "pose_angle": angle}
-        return EnvState(data, obs, measured, no, no, metrics, info)
+        return EnvState(data, obs, measured, metrics=metrics, info=info)
 
     def distance(self, s: Array, pose: Array | None = None) -> Array:
         """Signed distance [] [m] of s [2] to the nearest surface; `pose` [3] is theta."""

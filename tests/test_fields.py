@@ -137,7 +137,7 @@ def test_a_run_names_the_shortest_key_of_the_field():
         ("task=two_link algo=kle3_bayesopt", "belief.size=1: must be 2, as of the domain"),
         (
             "algo=sac learner@policy_learner=flash_sac",
-            "critic=EnsembleQ: has no in_batch, ",
+            "EnsembleQ has no in_batch, which FlashSAC.critic needs; write def",
         ),
         ("task=quadcopter env.asset=x", "env.asset=x: no model "),
         ("algo=localisation", "task=pendulum: has no env.acceleration, which localisation"),

@@ -31,6 +31,7 @@ from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.envs.trial import check
 from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame
 from hybrid_rl.fields import Positive, part
+from hybrid_rl.protocols.contract import of_user
 from hybrid_rl.types import EnvState, Spec
 
 ACTIONS = "they must be a Box with finite bounds, of one number or more"
@@ -219,7 +220,7 @@ def check_world(env: Any) -> tuple[str, ...]:
     """Notes about a world of the user's, before a run in it."""
     if isinstance(env, External):
         return env.known.notes
-    return () if type(env).__module__.startswith("hybrid_rl.") else check(env)
+    return check(env) if of_user(env) else ()
 
 
 def _generators() -> dict[str, Any]:

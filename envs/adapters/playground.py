@@ -45,7 +45,7 @@ class Playground:
     def reset(self, key: Array) -> EnvState:
         """The first state of an episode."""
         state = _loaded(self).reset(jax.random.key_data(key))
-        return EnvState(*self._parts(state), terminated=_done(state), truncated=jnp.zeros((), bool))
+        return EnvState(*self._parts(state), terminated=_done(state))
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state after action [m]."""

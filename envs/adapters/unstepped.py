@@ -23,8 +23,7 @@ class Unstepped:
 
     def reset(self, key: Array) -> EnvState:
         """A state with zeros for the observation; the loop puts the true one."""
-        zero, no = jnp.zeros(()), jnp.zeros((), bool)
-        return EnvState((), jnp.zeros(self.spec.obs), zero, no, no)
+        return EnvState((), jnp.zeros(self.spec.obs), jnp.zeros(()))
 
     def step(self, state: EnvState, action: Array) -> NoReturn:
         """No JAX function."""
