@@ -16,7 +16,7 @@ from hybrid_rl.data.trained import SavedPolicy
 from hybrid_rl.protocols import (
     Controller,
     Features,
-    LatestLearner,
+    Learner,
     Model,
     Objective,
     UniformLearner,
@@ -24,7 +24,6 @@ from hybrid_rl.protocols import (
 from hybrid_rl.protocols.contract import Contract, has_users, leaves, of_user, parts, words
 from hybrid_rl.types import Params, Spec
 
-LEARNERS = {"uniform": UniformLearner, "latest": LatestLearner}
 ROLES = {"model": Model, "objective": Objective}  # of a field without a type
 OWNED = tuple(name for name in Params._fields if name not in ("decisions", "world"))
 LEARNED = {"model", "reward", "policy", "critic"}  # fields of Params with parts of their own
@@ -48,10 +47,9 @@ def check_members(agent: Any) -> None:
     Contract(agent.controller, Controller, agent.spec).check_members()
     owners: dict[str, str] = {}
     for name, learner in agent.learners.items():
-        kind = LEARNERS.get(getattr(learner, "data", ""))
-        of = Contract(learner, kind or UniformLearner, agent.spec)
+        of = Contract(learner, _kind(learner), agent.spec)
         of.check_members()
-        if kind is None:
+        if learner.data not in ("uniform", "latest"):
             of.refuse("", f'data is {learner.data!r}; it must be "uniform" or "latest"')
         if not isinstance(learner.owns, tuple) or not {*learner.owns} <= {*OWNED}:
             must = f"it must be a tuple of fields of Params: {', '.join(OWNED)}"
@@ -83,7 +81,7 @@ def check(agent: Any, controllers: Iterable[Any]) -> None:
     learned, learning = {}, []
     for learner in agent.learners.values():
         own = lifting.lifted_spec(agent._lifting(learner), agent.spec)
-        of = Contract(learner, LEARNERS[learner.data], own)
+        of = Contract(learner, _kind(learner), own)
         of.check()
         given = of.values["owned"]
         if {*given} != {*learner.owns}:
@@ -112,7 +110,7 @@ def check_acting(agent: Any, whole: Iterable[Any], params: Params) -> None:
     model = next((part for _, name, _, part in parts(whole) if name == "model" and part), None)
     spec = lifting.lifted_spec(model if not needs_world(model) else None, agent.spec)
     for of in _contracts(whole, spec):
-        others = {Model, Features, *LEARNERS.values()} & {*of.protocol.__mro__}
+        others = {Model, Features, Learner} & {*of.protocol.__mro__}
         if of_user(of.part) and not others:
             own = getattr(of.owner, "model", None) or model
             of.values["Params"] = params
@@ -129,6 +127,11 @@ def check_acting(agent: Any, whole: Iterable[Any], params: Params) -> None:
             of.refuse("greedy", f"returned {words(greedy)}; it must be a controller")
         for acting in (controller, greedy) if has_users(whole) else ():
             Contract(acting, Controller, agent.spec, values={"Params": params}).check()
+
+
+def _kind(learner: Any) -> type:
+    """The protocol of a learner."""
+    return Learner if getattr(learner, "data", "") == "latest" else UniformLearner
 
 
 def _contracts(whole: Any, spec: Spec) -> Iterator[Contract]:

@@ -127,7 +127,6 @@ def check(planner: Any = Planner(), learner: Any = Fit()) -> None:
     [
         (Fit(data="replay"), 'Fit: data is \'replay\'; it must be "uniform" or "latest"'),
         (Fit(owns="model"), "Fit: owns is 'model'; it must be a tuple of fields of Params"),
-        (Fit(data="latest"), "Fit has no every; see protocols.LatestLearner"),
         (Fit(wrong="params"), "Fit.params: returned ['critic']; it must be a dict of what it"),
         (Fit(wrong="alone"), "Fit.update: returned state[0]['A'] nothing, init gave float32[3, 4]"),
         (Fit(wrong="longer"), "returned state[2] int32[], init gave nothing; both must be"),
