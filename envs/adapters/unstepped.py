@@ -1,6 +1,5 @@
 """Worlds that step outside JAX, and what makes those of the user."""
 
-import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, NoReturn
@@ -38,8 +37,6 @@ class Made(Unstepped):
     kwargs: Mapping[str, Any] | None = None  # of it
 
     def __post_init__(self) -> None:
-        if not (isinstance(self.make, str) or callable(self.make)):
-            raise UsageError(f"env.make={self.make}: must be MODULE:CLASS")
         if not isinstance(self.kwargs or {}, Mapping):
             raise UsageError(f"env.kwargs={self.kwargs}: must be {{KEY: VALUE}}")
         object.__setattr__(self, "kwargs", Items(self.kwargs or {}))
@@ -64,9 +61,7 @@ def import_named(make: Any) -> Callable[..., Any]:
     try:
         return getattr(*parts.imported(make))
     except FAULTS as error:  # whatever the user's module does
-        file = re.fullmatch(r"(?:\./)?(\w+)\.py:(\w+)", make)
-        hint = f"a module has no .py: {file[1]}:{file[2]}" if file else str(error)
-        line = user_line(error) or hint
+        line = user_line(error) or error
         raise UsageError(f"env.make={make}: cannot be imported ({line})") from error
 
 
