@@ -32,7 +32,7 @@ from hybrid_rl.envs.analytic.contact_plane import THREE, ContactPlane
 from hybrid_rl.envs.analytic.point_mass import DT, move
 from hybrid_rl.envs.mujoco import mjcf, rounded_boxes
 from hybrid_rl.envs.mujoco.kinematics import turned
-from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
+from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, Simulator
 from hybrid_rl.fields import Discount, NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
 
@@ -52,7 +52,7 @@ PLANE = (  # fields that contact_plane has, too
 class Sprk:
     """A ball among objects; `physics` is native, mjx, warp or auto."""
 
-    physics: str = "auto"
+    physics: Simulator = "auto"
     objects: tuple[tuple[float, ...], ...] = THREE
     acceleration: Positive = 1.0  # [m/s^2] a
     drag: NotNegative = 0.0  # [1/s] b
@@ -72,7 +72,6 @@ class Sprk:
     spec = Spec(obs=4, act=2, dt=DT)
 
     def __post_init__(self) -> None:
-        check(self.physics)
         for name in PLANE:
             object.__setattr__(self, name, getattr(self._plane, name))
 

@@ -41,7 +41,6 @@ def check(env: Any, decisions: int = 10) -> tuple[str, ...]:
     world = SourceOf(env, WorldError)
     if is_dataclass(env) and getattr(env, "physics", None) in physics.IMPLEMENTATIONS:
         given: Any = env  # `replace` is typed for dataclasses alone
-        world.blamed("reset", physics.check, given.physics)
         world = SourceOf(replace(given, physics="native"), WorldError)
     env = world.object
     protocol = BalancedEnv if callable(getattr(env, "equilibrium", None)) else Env
