@@ -28,7 +28,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.locomotion import Runner, pybullet_reward
-from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
+from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.fields import part
 
 ASSETS = {  # by contacts and integrator
@@ -50,8 +50,8 @@ class Ant(Runner):
     steps, dt, hidden = 5, 0.05, 2
 
     @property
-    def _body(self) -> Physics:
-        return self._physics(ASSETS[self.contacts, self.integrator])
+    def _asset(self) -> str:
+        return ASSETS[self.contacts, self.integrator]
 
     def _paid(self, data: PhysicsState, control: Array, speed: Array) -> tuple[Array, Array]:
         ended, model = self.ended(data.qpos[2:]), self._body.model

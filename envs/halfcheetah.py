@@ -31,8 +31,8 @@ class HalfCheetah(Runner):
     steps, dt, hidden = 5, 0.05, 1
 
     @property
-    def _body(self) -> Physics:
-        return self._physics(ASSETS[self.reward])
+    def _asset(self) -> str:
+        return ASSETS[self.reward]
 
     def _paid(self, data: PhysicsState, control: Array, speed: Array) -> tuple[Array, Array]:
         never = jnp.zeros((), bool)

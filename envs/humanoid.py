@@ -50,9 +50,12 @@ class Humanoid(Runner):
         return Spec(obs=45 if self.observation == "short" else 348, act=17, dt=self.dt)
 
     @property
+    def _asset(self) -> str:
+        return ASSETS[self.integrator]
+
+    @property
     def _body(self) -> Physics:
-        reads = REWARD_READS + OBSERVATION_READS[self.observation]
-        return self._physics(ASSETS[self.integrator], reads)
+        return self._physics(self._asset, REWARD_READS + OBSERVATION_READS[self.observation])
 
     def _start(self, key: Array, size: int) -> Array:
         return jax.random.uniform(key, (size,), jnp.float32, -self.spread, self.spread)

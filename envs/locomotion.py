@@ -16,6 +16,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.body import Body
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
 from hybrid_rl.fields import part
@@ -33,8 +34,12 @@ class Runner(Body):
 
     @property
     @abstractmethod
+    def _asset(self) -> str:
+        """The file of the model."""
+
+    @property
     def _body(self) -> Physics:
-        """The simulation."""
+        return self._physics(self._asset)
 
     @abstractmethod
     def _paid(self, data: PhysicsState, control: Array, speed: Array) -> tuple[Array, Array]:
@@ -43,7 +48,7 @@ class Runner(Body):
     @property
     def spec(self) -> Spec:
         """Observation size, action size and decision interval."""
-        model = self._body.model
+        model = mjcf.load(self._asset)
         return Spec(obs=model.nq - self.hidden + model.nv, act=model.nu, dt=self.dt)
 
     def reset(self, key: Array) -> EnvState:

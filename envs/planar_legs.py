@@ -19,7 +19,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.locomotion import Runner, pybullet_reward
-from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
+from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.fields import Positive, part
 
 
@@ -37,8 +37,8 @@ class PlanarLegs(Runner):
         """Whether [] an episode goes on at qpos without x [nq - 1] and qvel [nv]."""
 
     @property
-    def _body(self) -> Physics:
-        return self._physics(self.asset)
+    def _asset(self) -> str:
+        return self.asset
 
     def _start(self, key: Array, size: int) -> Array:
         return jax.random.uniform(key, (size,), jnp.float32, -self.spread, self.spread)
