@@ -205,7 +205,7 @@ def test_the_goal_is_the_end_of_the_best_way() -> None:
     there = GoalController(Middle(), Box(low=(-1.0,), high=(3.0,)), ahead=4)
     _, goal, _ = there.act(Params(), there.init(WORLD.spec), START, jax.random.key(0))
     assert float(goal.s[0]) == pytest.approx(0.3 + (0.5 - 0.3) / 0.625, abs=0.02)
-    with pytest.raises(ValueError, match=r"ahead=4: .* values no ways"):
+    with pytest.raises(ValueError, match=r"ahead=4: .* cannot score a path"):
         replace(there, target=Peak())
 
 
