@@ -229,18 +229,3 @@ def test_a_full_memory_takes_no_more_measurements() -> None:
     assert float(belief.report(state)["belief/full"]) == 1
     for old, new in zip(before[1:7], state[1:7], strict=True):
         np.testing.assert_array_equal(old, new)
-
-
-@pytest.mark.parametrize(
-    "field",
-    [
-        {"particles": 0},
-        {"measure": "A"},
-        {"kind": "A"},
-        {"trust": 0},
-        {"domain": Box((0,), (0.0,), (1.0,))},
-    ],
-)
-def test_bad_fields_are_refused(field) -> None:
-    with pytest.raises(ValueError, match=f"{next(iter(field))}[=.]"):
-        replace(BELIEF, **field)

@@ -1,6 +1,5 @@
 """Learned features: a linear world, the trivial solution, gradients, the regression, windows."""
 
-from dataclasses import replace
 from typing import Any
 
 import jax
@@ -201,18 +200,3 @@ def test_features_operator_and_gain_change_together_at_the_end_of_an_iteration()
     assert all(np.array_equal(a, b) for a, b in zip(first, same, strict=True))
     assert not any(np.array_equal(a, b) for a, b in zip(before, first, strict=True))
     assert not any(np.array_equal(a, b) for a, b in zip(same, second, strict=True))
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"fit": "sgd"}, "fit=sgd: choose one of least_squares, adam"),
-        ({"fit": "adam", "steps": 0}, "steps=0: must be a whole number, 1 or more"),
-        ({"interval": 4}, "interval=4: must be a whole number, 5 or more"),
-        ({"capacity": 100}, "capacity=100: must be a whole number, 200 or more"),
-        ({"prior": 0.0}, "prior=0.0: must be above 0"),
-    ],
-)
-def test_bad_fields_are_named(change, message):
-    with pytest.raises(ValueError, match=message):
-        replace(EmbeddingLearner(Koopman(Monomials())), **change)

@@ -1,5 +1,6 @@
 """Learning rates that fall along a run, in every learner that has a schedule."""
 
+from functools import partial
 from typing import Any
 
 import jax
@@ -10,16 +11,9 @@ from small import load
 
 from hybrid_rl.schedules.linear import LinearDecay
 from hybrid_rl.settings.build import build
+from hybrid_rl.types import Batch
 
 pytestmark = pytest.mark.turns(3)
-
-METHODS = ("sac", "ddpg", "flash_sac", "hybrid_stochastic")  # the last one learns models, too
-
-
-def weights(agent: Any, state: Any) -> list[np.ndarray]:
-    """The matrices of all layers that learn."""
-    leaves = jax.tree_util.tree_leaves_with_path(agent.params(state))
-    return [np.asarray(leaf) for path, leaf in leaves if "kernel" in jax.tree_util.keystr(path)]
 
 
 def test_the_factor_is_one_then_falls_to_zero():
@@ -29,11 +23,6 @@ def test_the_factor_is_one_then_falls_to_zero():
     )
 
 
-def test_without_a_length_it_is_refused():
-    with pytest.raises(ValueError, match="decisions=null: must be those of the whole run"):
-        LinearDecay()
-
-
 def test_a_resumed_run_with_more_decisions_lowers_the_rates_at_its_own_end():
     made = load("hybrid_stochastic", "task=pendulum", "schedule=linear")
     for made.total_steps in (200, 300):  # as `train resume=DIR total_steps=300` does
@@ -41,22 +30,46 @@ def test_a_resumed_run_with_more_decisions_lowers_the_rates_at_its_own_end():
         assert {each.schedule for each in learners.values()} == {LinearDecay(made.total_steps)}
 
 
-@pytest.mark.parametrize("algo", METHODS)
+def weights(params: Any) -> list[np.ndarray]:
+    """The matrices of all layers."""
+    leaves = jax.tree_util.tree_leaves_with_path(params)
+    return [np.asarray(leaf) for path, leaf in leaves if "kernel" in jax.tree_util.keystr(path)]
+
+
+def decisions(count: int, spec: Any) -> Batch:
+    """Random ones."""
+    rng = np.random.default_rng(0)
+    sizes = {"obs": (spec.obs,), "next_obs": (spec.obs,), "action": (spec.act,)}
+    sizes["next_action"] = sizes["action"]
+    rows = {name: rng.uniform(-1, 1, (count, *sizes.get(name, ()))) for name in Batch._fields}
+    return Batch(**{name: jnp.float32(row) for name, row in rows.items()})
+
+
+@pytest.mark.parametrize("algo", ["sac", "ddpg", "flash_sac", "hybrid_stochastic"])
 def test_rates_are_whole_at_first_and_zero_at_the_end(algo):
-    given = [algo, "task=pendulum"]  # the policy acts, as a planner compiles long
-    given += ["controllers.full=${actor}"] if algo == "hybrid_stochastic" else []
-    known, agent = (build(load(*given, *more)).agent for more in ([], ["schedule=linear"]))
-    state = jax.jit(agent.init)(jax.random.key(0))
-    plain, step = jax.jit(known.step), jax.jit(agent.step)
-    for k in range(10):
-        state = step(state, jnp.int32(k))[0]
-    before = weights(agent, state)
-    early, late, unscheduled = (
-        weights(agent, decide(state, jnp.int32(k))[0])
-        for decide, k in ((step, 10), (step, 200), (plain, 10))
-    )
-    assert len(before) > 2
-    for old, one, plain, last in zip(before, early, unscheduled, late, strict=True):
-        assert (one != old).any()
-        np.testing.assert_array_equal(one, plain)
-        np.testing.assert_allclose(last, old, rtol=1e-5)  # flash_sac normalises its weights
+    """Of the learner of a policy, and of that of a model in the last of the methods."""
+    words = [algo, "task=pendulum"]
+    known, agent = (build(load(*words, *more)).agent for more in ([], ["schedule=linear"]))
+    state, params = jax.jit(lambda key: (s := agent.init(key), agent.params(s)))(jax.random.key(0))
+    tested = {name for name, learner in agent.learners.items() if hasattr(learner, "schedule")}
+    assert {"policy"} <= tested
+    for name in tested:
+        learner, plain = agent.learners[name], known.learners[name]
+        rows = decisions(learner.batch_size * learner.batches, agent.spec)
+
+        @partial(jax.jit, static_argnums=0)
+        def updated(learner, k, rows=rows, name=name):
+            now = params._replace(decisions=k)
+            after = learner.update(state.learners[name], now, rows, jax.random.key(1))[0]
+            return learner.params(after)
+
+        before = weights(learner.params(state.learners[name]))
+        early, late, unscheduled = (
+            weights(updated(of, jnp.int32(k)))
+            for of, k in ((learner, 10), (learner, 200), (plain, 10))
+        )
+        assert len(before) > 1
+        for old, one, same, last in zip(before, early, unscheduled, late, strict=True):
+            assert (one != old).any()
+            np.testing.assert_array_equal(one, same)
+            np.testing.assert_allclose(last, old, rtol=1e-5)  # flash_sac normalises its weights

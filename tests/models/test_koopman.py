@@ -58,20 +58,6 @@ def test_the_how_to_has_observables_of_an_operator() -> None:
     np.testing.assert_allclose(z, [0.5, 2.0, np.sin(0.5)], rtol=1e-6)
 
 
-def test_pykoopman_agrees() -> None:
-    """EDMD with control, where pykoopman is installed."""
-    pk = pytest.importorskip("pykoopman")
-    x, u = RNG.uniform(-1, 1, (100, 2)), RNG.uniform(-1, 1, (100, 1))
-    after = x + 0.1 * np.column_stack([x[:, 1], u[:, 0] - x[:, 0]])
-    with jax.enable_x64(True):
-        learner = LeastSquares(Koopman(Monomials()), prior=1e-13)
-        state = learner.init(jax.random.key(0), SPEC)
-        state, _ = jax.jit(learner.update)(state, Params(), batch(x, u, after), jax.random.key(0))
-    theirs = pk.Koopman(observables=pk.observables.Identity(), regressor=pk.regression.EDMDc())
-    theirs.fit(x, after, u=u)
-    np.testing.assert_allclose(state.model["K"], np.hstack([theirs.A, theirs.B]), atol=1e-10)
-
-
 def test_learning_ends_and_k0_is_random_in_continuous_time() -> None:
     """`until` counts decisions of the run; K_0 - [I 0] has deviation s dt, or K_0 is zero."""
     learner = LeastSquares(CLOSED, deviation=2.0, until=1)
