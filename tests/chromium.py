@@ -1,6 +1,5 @@
 """A headless Chromium, driven by its DevTools protocol over a WebSocket."""
 
-import base64
 import json
 import shutil
 import subprocess
@@ -145,7 +144,3 @@ class Chromium:
         mobile = width < 500
         size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": mobile}
         self("Emulation.setDeviceMetricsOverride", **size)
-
-    def screenshot(self, file: Path) -> None:
-        """A PNG of the window."""
-        file.write_bytes(base64.b64decode(self("Page.captureScreenshot")["data"]))

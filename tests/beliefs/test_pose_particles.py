@@ -78,8 +78,8 @@ def filtered(belief, key, made):
 
 def posterior(made, trust=1.0, width=0.03):
     """Mean position, circular mean angle, spread of the position: exact, on a grid."""
-    side = 0.3 + 0.4 * (np.arange(41) + 0.5) / 41
-    angle = -np.pi + 2 * np.pi * (np.arange(90) + 0.5) / 90
+    side = 0.3 + 0.4 * (np.arange(31) + 0.5) / 31
+    angle = -np.pi + 2 * np.pi * (np.arange(72) + 0.5) / 72
     theta = np.stack(np.meshgrid(side, side, angle, indexing="ij"), -1).reshape(-1, 3)
     log_w = np.zeros(len(theta))
     for at, one in zip(*made, strict=True):

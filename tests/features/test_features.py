@@ -35,7 +35,7 @@ def test_a_network_contains_the_state() -> None:
     assert alone(begun(alone, SPEC), jnp.asarray(OBS)).shape == (5,)
 
 
-def lifted(obs: np.ndarray, *words: str) -> jax.Array:
+def lifted(obs, *words):
     """z [n] of the model that these words compose."""
     model = instantiate(config.load([*words]).learners.model.model, _convert_="all")
     return model.lift(begun(model, Spec(len(obs), 4, 0.1)), jnp.asarray(obs))

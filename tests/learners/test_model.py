@@ -139,26 +139,6 @@ def test_mean_and_standard_deviation_are_learned() -> None:
     assert np.mean(np.abs(std / noise(test.obs) - 1)) < 0.15
 
 
-@partial(jax.jit, static_argnums=1)
-def draw_linear(key: Array, size: int = 128) -> Batch:
-    """x' = x + (0.1 x_1, 0.1 u), in units that differ; reward 500 + 80 x_0."""
-    batch = draw(key, size)
-    y = batch.obs / SCALE[None]
-    change = 0.1 * jnp.stack([y[:, 1], batch.action[:, 0]], 1)
-    return batch._replace(reward=500 + 80 * y[:, 0], next_obs=SCALE[None] * (y + change))
-
-
-def test_direct_prediction_and_scaled_rewards_are_learned() -> None:
-    """With all ingredients: f is x + change of a linear world, r in its own units."""
-    model = Gaussian(hidden=(64,), activation="silu", predict="state", layer_norm=True)
-    reward = RewardNetwork(hidden=(64,), activation="silu", scale=True, layer_norm=True)
-    params = trained(ModelLearner(model, reward, weight_decay=1e-4), 1000, draw_linear)
-    test = draw_linear(jax.random.key(9), 500)
-    error = np.abs(predictions(model, params, test) - test.next_obs).mean(0) / SCALE
-    assert (error < 0.03).all()
-    assert np.abs(outcomes(reward, params, test)[0] - test.reward).mean() < 0.05 * 80
-
-
 def test_weight_decay_shrinks_matrices_alone() -> None:
     """Adam's first step is learning_rate sign(gradient); AdamW's takes a share of W more."""
     learner = ModelLearner(Gaussian(hidden=(8,)), RewardNetwork(hidden=(8,)), weight_decay=10.0)

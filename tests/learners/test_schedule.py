@@ -1,5 +1,6 @@
 """Learning rates that fall along a run, in every learner that has a schedule."""
 
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -8,10 +9,11 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from small import load
+from toys import begun
 
 from hybrid_rl.schedules.linear import LinearDecay
 from hybrid_rl.settings.build import build
-from hybrid_rl.types import Batch
+from hybrid_rl.types import Batch, Params
 
 pytestmark = pytest.mark.turns(3)
 
@@ -48,25 +50,27 @@ def decisions(count: int, spec: Any) -> Batch:
 @pytest.mark.parametrize("algo", ["sac", "ddpg", "flash_sac", "hybrid_stochastic"])
 def test_rates_are_whole_at_first_and_zero_at_the_end(algo):
     """Of the learner of a policy, and of that of a model in the last of the methods."""
-    words = [algo, "task=pendulum"]
-    known, agent = (build(load(*words, *more)).agent for more in ([], ["schedule=linear"]))
-    state, params = jax.jit(lambda key: (s := agent.init(key), agent.params(s)))(jax.random.key(0))
-    tested = {name for name, learner in agent.learners.items() if hasattr(learner, "schedule")}
-    assert {"policy"} <= tested
-    for name in tested:
-        learner, plain = agent.learners[name], known.learners[name]
+    agent = build(load(algo, "task=pendulum", "schedule=linear")).agent
+    states = {name: begun(learner, agent.spec) for name, learner in agent.learners.items()}
+    owned = [learner.params(states[name]) for name, learner in agent.learners.items()]
+    params = Params(**{role: value for each in owned for role, value in each.items()})
+    scheduled = {name: of for name, of in agent.learners.items() if hasattr(of, "schedule")}
+    assert "policy" in scheduled
+    for name, learner in scheduled.items():
         rows = decisions(learner.batch_size * learner.batches, agent.spec)
 
         @partial(jax.jit, static_argnums=0)
-        def updated(learner, k, rows=rows, name=name):
+        def updated(learner, k, state, rows=rows):
             now = params._replace(decisions=k)
-            after = learner.update(state.learners[name], now, rows, jax.random.key(1))[0]
-            return learner.params(after)
+            return learner.update(state, now, rows, jax.random.key(1))[0]
 
-        before = weights(learner.params(state.learners[name]))
-        early, late, unscheduled = (
-            weights(updated(of, jnp.int32(k)))
-            for of, k in ((learner, 10), (learner, 200), (plain, 10))
+        state = states[name]
+        for k in range(3):  # so that branches are there to learn from
+            state = updated(learner, jnp.int32(k), state)
+        given = (learner, 10), (learner, 200), (replace(learner, schedule=None), 10)
+        before, early, late, unscheduled = (
+            weights(learner.params(after))
+            for after in (state, *(updated(of, jnp.int32(k), state) for of, k in given))
         )
         assert len(before) > 1
         for old, one, same, last in zip(before, early, unscheduled, late, strict=True):
