@@ -45,6 +45,7 @@ def browser(tmp_path_factory):
     if not chromium.PROGRAM:
         pytest.skip("needs Chromium")
     with chromium.opened(tmp_path_factory.mktemp("profile")) as page:
+        page.size(800, 600)
         yield page
 
 

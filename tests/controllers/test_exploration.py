@@ -46,6 +46,12 @@ def follow(controller: Any, decisions: int, x: Array = START) -> tuple:
     return jax.jit(lambda: jax.lax.scan(decide, first, keys)[1])()
 
 
+def decide(controller: Any) -> tuple:
+    """One decision at the start."""
+    key = jax.random.key(0)
+    return jax.jit(controller.act)(Params(), controller.init(WORLD.spec), START, key)
+
+
 def own(x: Array) -> Array:
     """The regulator's actions at x [T, 6]."""
     return jax.vmap(lambda x: PI.mean((), x))(x)
@@ -58,11 +64,14 @@ def test_the_correction_is_that_of_the_thesis() -> None:
     def step(x: Array, u: Array) -> Array:
         return model.step((), x, u)
 
-    path = adjoint.roll(step, lambda x: PI.mean((), x), START, jnp.zeros((8, 1)))
-    around = adjoint.adjoint(step, lambda x: PI.mean((), x), RIGHT.value, path)
-    h = jax.jacfwd(step, argnums=1)(START, path.u[0])
-    u = KLE3.act(Params(), KLE3.init(WORLD.spec), START, jax.random.key(0))[0]
-    np.testing.assert_allclose(u, path.u[0] + 5.0 * h.T @ around.costate[1], rtol=1e-5)
+    @jax.jit
+    def wanted() -> Array:
+        path = adjoint.roll(step, lambda x: PI.mean((), x), START, jnp.zeros((8, 1)))
+        around = adjoint.adjoint(step, lambda x: PI.mean((), x), RIGHT.value, path)
+        h = jax.jacfwd(step, argnums=1)(START, path.u[0])
+        return path.u[0] + 5.0 * h.T @ around.costate[1]
+
+    np.testing.assert_allclose(decide(KLE3)[0], wanted(), rtol=1e-5)
 
 
 def test_horizon_adds_its_plan_to_the_policy_at_the_measured_state() -> None:
@@ -79,11 +88,7 @@ def test_horizon_adds_its_plan_to_the_policy_at_the_measured_state() -> None:
 
 def test_search_keeps_the_best_window() -> None:
     """By the model its return is at least that of the whole plan, of which it is one part."""
-    searching = replace(KLE3, apply="search")
-    plans = {
-        name: c.act(Params(), c.init(WORLD.spec), START, jax.random.key(0))
-        for name, c in (("search", searching), ("horizon", replace(KLE3, apply="horizon")))
-    }
+    plans = {name: decide(replace(KLE3, apply=name)) for name in ("search", "horizon")}
     returns = {name: float(p[2]["planner/planned_return"]) for name, p in plans.items()}
     assert returns["search"] >= returns["horizon"]
     searched, whole = (np.asarray(plans[name][1].plan) for name in ("search", "horizon"))
@@ -98,7 +103,7 @@ def test_search_is_never_worse_than_no_correction() -> None:
     for gain, acts in ((100.0, False), (0.5, True)):
         given = {"objective": gentle, "policy": None, "lyapunov": None, "apply": "search"}
         wild = replace(KLE3, gain=gain, **given)
-        u, state, metrics = wild.act(Params(), wild.init(WORLD.spec), START, jax.random.key(0))
+        u, state, metrics = decide(wild)
         assert np.asarray([u, *state.plan]).any() == acts
         wanted = 0 if acts else -8 * 0.1**2
         assert float(metrics["planner/planned_return"]) == pytest.approx(wanted, abs=1e-6)
@@ -107,8 +112,7 @@ def test_search_is_never_worse_than_no_correction() -> None:
 def test_lyapunov_metrics_follow_their_definitions() -> None:
     """V, its change under the policy, and the bound, with the exact model."""
     controller = replace(KLE3, model=Exact(WORLD), horizon=3)
-    begin = controller.init(WORLD.spec)
-    first, state, metrics = jax.jit(controller.act)(Params(), begin, START, jax.random.key(0))
+    first, state, metrics = decide(controller)
     flow, mean = jax.jit(WORLD.dynamics), jax.jit(lambda x: PI.mean((), x))
     P = PI.solve()[1]
 
@@ -162,7 +166,7 @@ class Peak:
 def test_the_goal_is_the_maximum_of_the_target() -> None:
     """Without a policy the action is the goal; a policy drives there and gets a new one in time."""
     there = GoalController(Peak(), Box(low=(-1.0,), high=(3.0,)))
-    u, goal, _ = there.act(Params(), there.init(WORLD.spec), START, jax.random.key(0))
+    u, goal, _ = decide(there)
     assert float(goal.s[0]) == pytest.approx(0.4, abs=0.02)
     assert float(u[0]) == pytest.approx((0.4 + 1) / 2 - 1, abs=0.01)
     x, _, state, _ = follow(GoalController(Peak(), Box(), PI, every=50), 1500, 0 * START)
@@ -179,5 +183,5 @@ def test_the_goal_is_the_end_of_the_best_way() -> None:
             return -jnp.abs(path[:, 0].mean() - 0.5)
 
     there = GoalController(Middle(), Box(low=(-1.0,), high=(3.0,)), ahead=4)
-    _, goal, _ = there.act(Params(), there.init(WORLD.spec), START, jax.random.key(0))
+    _, goal, _ = decide(there)
     assert float(goal.s[0]) == pytest.approx(0.3 + (0.5 - 0.3) / 0.625, abs=0.02)

@@ -251,7 +251,7 @@ def test_the_page_shows_the_robot_steps_and_is_pushed(window, tmp_path):
     session, server, link = window
     address = f"127.0.0.1:{server.get_port()}"
     with opened(tmp_path) as page:
-        page.size(800, 500)  # without a GPU every pixel takes its time
+        page.size(1280, 800)
         page.open(link)
         page.wait("document.body.innerText.includes('mode policy')")
         until(lambda: session.wishes.paused or page.click("Step"))  # the panel moves at first
