@@ -94,29 +94,7 @@ def test_a_full_disk_is_one_line_and_no_file(tmp_path, monkeypatch, name):
     assert [*tmp_path.iterdir()] == []
 
 
-def test_what_fails_halfway_leaves_nothing(tmp_path, monkeypatch, can_draw):
-    if not can_draw:
-        return
-
-    def broken(*_):
-        yield np.zeros((48, 64, 3), np.uint8)
-        raise RuntimeError("broken")
-
-    monkeypatch.setattr(drawing, "frames", broken)
-    with pytest.raises(RuntimeError, match="broken"):
-        drawing.draw(FIXED, positions(), tmp_path / "a.mp4", 25, 64, 48)
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_a_png_is_the_picture_halfway(tmp_path, can_draw):
-    if not can_draw:
-        return
-    out = drawing.draw(FIXED, positions(5), tmp_path / "a.png", 25, 64, 48)
-    film = list(drawing.frames(FIXED, positions(5), 64, 48))
-    np.testing.assert_array_equal(iio.imread(out), film[2])
-
-
-def test_a_panel_is_to_the_right_of_its_picture(tmp_path, can_draw):
+def test_a_png_is_the_picture_halfway_with_its_panel_on_the_right(tmp_path, can_draw):
     if not can_draw:
         return
     grey = lambda i: np.full((48, 10, 3), 40 * i, np.uint8)  # noqa: E731

@@ -154,20 +154,6 @@ def test_the_gradient_of_information_is_that_of_central_differences(criterion: s
         np.testing.assert_allclose(along.gradient, reverse, rtol=1e-10, atol=1e-12)
 
 
-def test_the_state_of_rest_is_a_saddle_of_information() -> None:
-    """Without knowledge of B, zero action is stationary: exploration needs a first excitation."""
-    model = Koopman(Monomials())
-    params = Params(model=model.init(jax.random.key(0), SPEC))
-    value, _ = Information(model).prepare(params, (), jnp.zeros(2), jnp.zeros(1), jax.random.key(0))
-    path = adjoint.roll(
-        lambda x, u: model.step(params.model, x, u),
-        lambda x: jnp.zeros(1),
-        jnp.ones(2),
-        jnp.zeros((4, 1)),
-    )
-    np.testing.assert_array_equal(jax.grad(value)(path).u, 0)
-
-
 def test_draws_of_the_model_have_the_covariance_of_the_regression() -> None:
     """noise^2 (U'U)^-1 for each row of K, around its mean."""
     _, params, _ = informed("gain")
