@@ -68,6 +68,8 @@ def test_held_out_decisions_are_transitions_of_the_task(folder: Path) -> None:
 
 
 def test_a_run_without_a_model_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(held_out, "load", lambda *_: SimpleNamespace(params=Params()))
-    with pytest.raises(UsageError, match=r"^runs=runs/a: has no learned model"):
-        held_out.restored(Path("runs/a"))
+    run = SimpleNamespace(task="pendulum", params=Params())
+    monkeypatch.setattr(held_out, "find", lambda runs: [Path("runs/a")])
+    monkeypatch.setattr(held_out, "load", lambda *_: run)
+    with pytest.raises(UsageError, match=r"^runs=runs/a: .* learned model"):
+        held_out.figure("runs/a")

@@ -203,20 +203,10 @@ def test_a_disc_in_the_middle_does_not_tell_the_angle() -> None:
     belief = replace(BELIEF, map=disc)
     s, _ = measurements()
     y = (np.hypot(*(s - TRUE[:2]).T) < 0.18).astype(np.float32)
-
-    def one(state, measured):
-        return belief.add(state, *measured), None
-
-    data = jnp.asarray(s, jnp.float32), jnp.asarray(y), jax.random.split(jax.random.key(1), len(y))
-
-    @jax.jit
-    def run():
-        return belief.report(jax.lax.scan(one, belief.init(jax.random.key(0), SPEC), data)[0])
-
-    report = run()
-    position = [float(report[f"belief/mean_{axis}"]) for axis in "xy"]
-    np.testing.assert_allclose(position, TRUE[:2], atol=0.03)
-    assert float(report["belief/spread_angle"]) > 2  # [rad]; of a uniform angle it is unbounded
+    for report in estimated(belief, (s, y)):
+        position = [report[f"belief/mean_{axis}"] for axis in "xy"]
+        np.testing.assert_allclose(position, TRUE[:2], atol=0.03)
+        assert report["belief/spread_angle"] > 2  # [rad]; of a uniform angle it is unbounded
 
 
 def test_a_full_memory_takes_no_more_measurements() -> None:
