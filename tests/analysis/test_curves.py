@@ -193,9 +193,6 @@ def test_of_a_loss_a_failed_learner_has_no_value(tmp_path):
         ("metrics.jsonl", b"[1]\n", "line 1 is no row of metrics"),
         ("metrics.jsonl", b"\xa0\xff\n", "line 1 is no row of metrics"),
         ("metrics.jsonl", b"", "metrics.jsonl: no row of metrics yet"),
-        ("config.yaml", b"a: [\n", "config.yaml: line 2 is no YAML"),
-        ("config.yaml", b"", "config.yaml: is empty, or no group of keys"),
-        ("config.yaml", b"\xa0\xff", "config.yaml: is not text"),
         ("summary.json", b"{", "summary.json: is not JSON"),
     ],
 )
