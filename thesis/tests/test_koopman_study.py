@@ -9,7 +9,7 @@ import pytest
 from tiny import call
 
 from hybrid_rl import figures, train
-from hybrid_rl.analysis import drawing
+from hybrid_rl.analysis import drawing, results
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.quadcopter_se3 import DT
@@ -21,7 +21,6 @@ from hybrid_rl.thesis.studies import (
     falls,
     falls_picture,
     koopman,
-    recorded,
     tracking,
 )
 from hybrid_rl.thesis.studies.falls import Fall
@@ -147,7 +146,7 @@ def test_runs_become_falls(tmp_path, capsys, monkeypatch) -> None:
     assert draw("view=initial", runs, f"out={out}") == 0
     monkeypatch.undo()
     assert draw("view=falls", f"out={out}") == 2
-    assert "runs: not given; give runs=" in capsys.readouterr().err
+    assert "runs=: no run there" in capsys.readouterr().err
 
 
 def test_labels_name_the_settings_that_differ(tmp_path) -> None:
@@ -156,9 +155,9 @@ def test_labels_name_the_settings_that_differ(tmp_path) -> None:
         (tmp_path / name).mkdir()
         (tmp_path / name / "config.yaml").write_text(f"algo: k\nenv: {{twist: {twist}}}\n")
     a, b, c = (tmp_path / name for name in "abc")
-    assert recorded.labels([a]) == ["k"]
-    assert recorded.labels([a, b]) == ["k twist=0", "k twist=1"]
-    assert recorded.labels([b, c]) == [str(b), str(c)]
+    assert results.labels([a]) == ["k"]
+    assert results.labels([a, b]) == ["k twist=0", "k twist=1"]
+    assert results.labels([b, c]) == [str(b), str(c)]
 
 
 def sine(delay: float, dt: float = 1 / 30, shift: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
