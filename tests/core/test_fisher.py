@@ -243,25 +243,3 @@ def test_a_recorded_path_is_numpy_in_float64(kind) -> None:
     assert F.dtype == d.dtype == jnp.float32
     np.testing.assert_allclose(F[0], np.stack([x[0], u[0]], 1), rtol=1e-6)
     np.testing.assert_allclose(F.sum(2), d, rtol=1e-5)
-
-
-def test_names_that_are_none_are_refused() -> None:
-    F = jnp.ones((5, 2, 2))
-    with pytest.raises(ValueError, match="criterion d: choose one of A_step, A, D, T, full"):
-        fisher.criterion("d", F, jnp.ones(2), jnp.ones(2))
-    path = Path(jnp.zeros((3, 1)), jnp.zeros((2, 1)))
-    with pytest.raises(ValueError, match="kind steps: choose one of step, path"):
-        fisher.along(lambda theta, x, u: theta * x, jnp.ones(1), path, "steps")
-
-
-@pytest.mark.parametrize(
-    ("sigma", "prior", "words"),
-    [
-        (0.1, jnp.ones(3), r"sigma has shape \(\), must have \(2,\); F .* = \(5, 2, 3\)"),
-        (jnp.ones(2), jnp.eye(3), r"prior has shape \(3, 3\), must have \(3,\)"),
-    ],
-)
-def test_deviations_and_prior_of_another_shape_are_refused(sigma, prior, words) -> None:
-    """A matrix of the prior would be added to a diagonal."""
-    with pytest.raises(ValueError, match=words):
-        fisher.criterion("D", jnp.ones((5, 2, 3)), sigma, prior)

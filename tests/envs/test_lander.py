@@ -2,15 +2,13 @@
 
 import jax
 import jax.numpy as jnp
-import mujoco
 import numpy as np
 import pytest
 from scipy.linalg import solve_discrete_are
-from worlds import follow, jitted
+from worlds import follow, jitted, shown
 
 from hybrid_rl.envs.analytic.lander import DT, Lander
 from hybrid_rl.envs.analytic.state import fully_observed
-from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.policies.regulator import Regulator
 
 ENV = Lander()
@@ -102,23 +100,8 @@ def test_a_flip_begins_around_the_hover_and_a_hover_at_rest() -> None:
 
 def test_the_scene_shows_the_angle() -> None:
     """A quarter turn to the left: the vehicle's axis points to -x, its right side up."""
-    model = mjcf.load("lander.xml")
-    data = mujoco.MjData(model)
     x = jnp.array([0.4, 0.3, jnp.pi / 2, 0.0, 0.0, 0.0])
-    data.qpos[:] = ENV.pose(fully_observed(x, jnp.zeros(())))
-    mujoco.mj_forward(model, data)
+    data = shown(ENV, fully_observed(x, jnp.zeros(())))
     np.testing.assert_allclose(data.body("lander").xpos, [0.4, 0, 0.3], atol=1e-6)
     np.testing.assert_allclose(data.body("lander").xmat.reshape(3, 3)[:, 2], [-1, 0, 0], atol=1e-6)
     assert data.geom("right").xpos[2] > 0.3
-
-
-@pytest.mark.parametrize(
-    ("fields", "words"),
-    [
-        ({"task": "land"}, "task=land: choose one of hover, flip"),
-        ({"turns": 0.7}, "turns=0.7: must be 0.5 or 1.0"),
-    ],
-)
-def test_other_tasks_are_refused(fields: dict, words: str) -> None:
-    with pytest.raises(ValueError, match=words):
-        Lander(**fields)

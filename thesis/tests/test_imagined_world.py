@@ -31,11 +31,3 @@ def test_a_run_whose_policy_learns_from_a_model(tmp_path):
         assert row["world"]["ended"] == row["model"]["ended"] == [0.0, 0.0, 0.0]
         assert all(-16.3 < each < 0 for each in row["world"]["reward"])
         assert np.isfinite(row["model"]["reward"]).all()
-
-
-def test_a_run_without_a_model_is_refused_in_one_line(tmp_path, capsys):
-    run(tmp_path / "run", "algo=sac")
-    assert call(lambda: sys.exit(imagined.main()), tmp_path / "run") == 1
-    assert capsys.readouterr().err == (
-        f"{tmp_path / 'run'}: its policy learns without a model; choose algo=hybrid_stochastic\n"
-    )

@@ -7,7 +7,7 @@ import sys
 import gymnasium
 import numpy as np
 import pytest
-from test_adapters import play
+from test_gymnasium import play
 
 from hybrid_rl.envs import gym
 from hybrid_rl.envs.adapters.gymnasium import GymnasiumEnv, GymnasiumVectorEnv
