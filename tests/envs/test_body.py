@@ -14,6 +14,7 @@ from worlds import (
     actions,
     jitted,
     make,
+    placed,
     rollout,
 )
 
@@ -105,6 +106,7 @@ RIGS = """
       <body pos="0 0 0.1">
         <joint name="hinge" axis="0 1 0" stiffness="1" damping="0.1" armature="0.01"/>
         <geom type="capsule" size="0.02" fromto="0 0 0 0.1 0 0.3" mass="0.5" contype="0"/>
+        <site name="tip" pos="0.1 0 0.3"/>
       </body>
     </body>
     <body pos="0 2 0.05">
@@ -114,6 +116,11 @@ RIGS = """
   </worldbody>
   <contact><pair geom1="floor" geom2="ball" friction="0.3 0.3 0.005 0.0001 0.0001"/></contact>
   <actuator><position joint="hinge" kp="5" kv="0.2"/></actuator>
+  <sensor>
+    <jointvel joint="hinge"/>
+    <framepos name="tip" objtype="site" objname="tip"/>
+    <framelinvel objtype="site" objname="tip"/>
+  </sensor>
 </mujoco>
 """
 
@@ -127,18 +134,19 @@ def rig(tmp_path_factory):
 
 
 def pushed(physics):
-    """The function fields, height -> velocities [nv] after 40 physics steps of sliding, jitted."""
+    """The function fields, height -> states before and after 40 physics steps of sliding."""
 
     def after(fields, height=0.0):
         qpos = jnp.zeros(5).at[jnp.array([1, 4])].set(height)
         speed = jnp.array([2.0, 0, 0, 2, 0])
-        return physics.step(physics.reset(qpos, speed, fields), jnp.ones(1), 40).qvel
+        start = physics.reset(qpos, speed, fields)
+        return start, physics.step(start, jnp.ones(1), 40)
 
     return jax.jit(after)
 
 
 def of_mujoco(asset, name, factor, height):
-    """What `pushed` should give, from MuJoCo's own loop; a field times a factor."""
+    """The velocities [nv] that `pushed` should reach, by MuJoCo's own loop; a field by a factor."""
     model = mujoco.MjModel.from_xml_path(asset)
     attrgetter(name)(model)[:] *= factor
     mujoco.mj_setConst(model, mujoco.MjData(model))
@@ -150,16 +158,23 @@ def of_mujoco(asset, name, factor, height):
 
 @pytest.mark.parametrize("implementation", ["native", "mjx"])
 def test_each_field_that_an_episode_has_for_itself_acts_as_in_mujoco(rig, implementation):
-    """MJX: a mass in the air, since on the floor its contacts are those of the model's masses."""
+    """And sensors are those of the state.
+
+    MJX: a mass in the air, since on the floor its contacts are those of the model's masses.
+    """
     physics = Physics(rig, implementation)
     after = pushed(physics)
     own = {n: jnp.asarray(attrgetter(n)(physics.model), jnp.float32) for n in mjcf.FIELDS}
+    for state in after(own):
+        sensed = placed(rig, state.qpos, state.qvel)[1].sensordata
+        np.testing.assert_allclose(state.sensors, sensed, atol=1e-5)
+        np.testing.assert_array_equal(physics.sensor(state, "tip"), state.sensors[1:4])
     for name in mjcf.FIELDS:
         height = 1.0 if (implementation, name) == ("mjx", "body_mass") else 0.0
         factor = 0.5 if name == "opt.gravity" else 1.5
         plain, expected = (of_mujoco(rig, name, each, height) for each in (1.0, factor))
         assert np.abs(expected - plain).max() > 0.01, name
-        found = after({**own, name: factor * own[name]}, height)
+        found = after({**own, name: factor * own[name]}, height)[1].qvel
         np.testing.assert_allclose(found, expected, atol=2e-4, err_msg=name)  # measured: 6e-5
 
 
@@ -167,8 +182,8 @@ def test_environments_side_by_side_keep_their_own_bodies(rig):
     """Also where the order changes from one call to the next."""
     physics = Physics(rig, "native")
     masses = np.array([1.0, 2.0, 3.0], np.float32)[:, None] * physics.model.body_mass
-    together = jax.jit(jax.vmap(lambda mass: pushed(physics)({"body_mass": mass})))
-    alone = [pushed(physics)({"body_mass": mass}) for mass in masses.astype(np.float32)]
+    together = jax.jit(jax.vmap(lambda mass: pushed(physics)({"body_mass": mass})[1].qvel))
+    alone = [pushed(physics)({"body_mass": mass})[1].qvel for mass in masses.astype(np.float32)]
     assert len({float(speed[2]) for speed in alone}) == 3
     for order in ([0, 1, 2], [2, 1, 0], [2, 0, 0]):
         found = together(masses[order].astype(np.float32))

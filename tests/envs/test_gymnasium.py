@@ -24,7 +24,7 @@ pytestmark = pytest.mark.turns(2)
 
 
 @pytest.mark.filterwarnings("ignore:.*Box observation space (min|max)imum value is:UserWarning")
-@pytest.mark.parametrize("name", ["HalfCheetah", "Hopper", "TwoLink"])
+@pytest.mark.parametrize("name", ["HalfCheetah", "TwoLink"])
 def test_gymnasium_accepts_an_environment(name, can_draw):
     """By its id, whose environment has a `spec`."""
     env = gymnasium.make(f"hybrid_rl/{name}", render_mode="rgb_array")
@@ -121,9 +121,9 @@ def test_rendering_needs_no_display(can_draw):
     assert two.render().std() > 10
 
 
-@pytest.mark.parametrize("env", [HalfCheetah("native"), Hopper("native")])
-def test_the_adapter_steps_the_environment(env):
+def test_the_adapter_steps_the_environment():
     """200 decisions of random actions, without resets."""
+    env = Hopper("native")
     adapter = GymnasiumEnv(env, steps=200)
     adapter.reset(seed=0)
     adapter.action_space.seed(0)

@@ -9,34 +9,11 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from tiny import only_line
-from worlds import placed
 
 from hybrid_rl.envs.mujoco import native, xla_callback
 from hybrid_rl.envs.mujoco.physics import Physics, resolve
 
 CHEETAH = Physics("halfcheetah.xml", "native")
-SENSING = """
-<mujoco>
-  <option><flag autoreset="disable"/></option>
-  <worldbody>
-    <body>
-      <joint name="first" axis="0 1 0"/>
-      <geom type="capsule" fromto="0 0 0 0 0 -1" size="0.05" contype="0"/>
-      <body pos="0 0 -1">
-        <joint name="second" axis="0 1 0"/>
-        <geom type="capsule" fromto="0 0 0 0 0 -1" size="0.05" contype="0"/>
-        <site name="tip" pos="0 0 -1"/>
-      </body>
-    </body>
-  </worldbody>
-  <actuator><motor joint="second"/></actuator>
-  <sensor>
-    <jointvel name="spin" joint="second"/>
-    <framepos name="tip" objtype="site" objname="tip"/>
-    <framelinvel name="speed" objtype="site" objname="tip"/>
-  </sensor>
-</mujoco>
-"""
 
 
 def _states(physics, count):
@@ -138,20 +115,6 @@ def test_the_persistent_cache_accepts_compiled_programs():
     text = _many(CHEETAH, 1).lower(state, ctrl).compile().as_text()
     assert "hybrid_rl.native" in text
     assert "xla_ffi_python" not in text
-
-
-@pytest.mark.parametrize("implementation", ["native", "mjx"])
-def test_sensors_belong_to_the_state(implementation, tmp_path):
-    file = tmp_path / "double.xml"
-    file.write_text(SENSING)
-    physics = Physics(str(file), implementation)
-    state = jax.jit(physics.reset)(jnp.array([0.5, 1.0]), jnp.array([2.0, -3.0]))
-    after = jax.jit(lambda s: physics.step(s, jnp.ones(1), 5))(state)
-    for now in (state, after):
-        expected = placed(str(file), now.qpos, now.qvel)[1].sensordata
-        np.testing.assert_allclose(now.sensors, expected, atol=1e-5)
-        np.testing.assert_array_equal(physics.sensor(now, "tip"), now.sensors[1:4])
-    assert (np.abs(after.sensors - state.sensors) > 1e-3).sum() >= 5
 
 
 def test_auto_depends_on_the_number_of_environments(monkeypatch):

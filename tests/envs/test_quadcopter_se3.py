@@ -1,4 +1,4 @@
-"""The quadcopter on SE(3): its equations by SciPy, and random attitude, noise, wind, a lost rotor."""
+"""The quadcopter on SE(3): its equations by SciPy; attitude, noise, wind, and a lost rotor."""
 
 import jax
 import jax.numpy as jnp

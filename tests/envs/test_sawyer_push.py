@@ -146,8 +146,9 @@ def test_push_reward():
     state = _sawyer((0.3, 0.4), (0.0, 0.1), jnp.zeros(2))
     np.testing.assert_allclose(state.reward, -5 * 0.1 - 10 * 0.5, atol=2e-3)
     np.testing.assert_allclose(state.obs, [3.0, 4.0, 0.0, -1.0], atol=2e-3)
-    moving = _sawyer((0.3, 0.4), (0.0, 0.1), jnp.array([0.0, 1.0]), speed=0.0)
-    np.testing.assert_allclose(moving.reward - state.reward, -0.01, atol=1e-4)
+    moving = _sawyer((0.3, 0.4), (0.0, 0.1), jnp.array([0.0, 1.0]))
+    near, far = (np.linalg.norm(moving.obs[i : i + 2]) for i in (0, 2))
+    np.testing.assert_allclose(moving.reward, -0.5 * far - near - 0.01, atol=1e-4)
     assert not state.terminated
     assert _sawyer((0.3, 0.4), (0.0, 0.049), jnp.zeros(2)).terminated
     continued = _sawyer((0.3, 0.4), (0.0, 0.049), jnp.zeros(2), terminate=False)

@@ -23,19 +23,6 @@ def roll(env, actions):
     return jax.tree.map(lambda a, b: np.concatenate([a[None], b]), first, path)
 
 
-@pytest.mark.parametrize("a", [(1.0, 0.0), (0.6, -0.8), (0.3, 0.4), (0.08, 0.06)])
-def test_terminal_speed_in_closed_form(a) -> None:
-    """k |a| = d1 s + d2 s^2 + mu without slip; nearly 0 below the dry friction."""
-    env = SprkSand(sensor_noise=0.0, slip=0.0, variation=0.0)
-    v = roll(env, np.tile(a, (300, 1))).data.v[-1]
-    force = 4.0 * np.linalg.norm(a) - 0.6
-    if force > 0:
-        speed = (-1.5 + np.sqrt(1.5**2 + 4 * 3.0 * force)) / (2 * 3.0)
-        np.testing.assert_allclose(v, speed * np.array(a) / np.linalg.norm(a), atol=1e-5)
-    else:
-        assert np.linalg.norm(v) < 0.02
-
-
 def test_path_against_an_accurate_integration() -> None:
     """Two seconds of a constant command with slip and varying sand, by SciPy."""
     a = np.array([-0.5, 0.7])

@@ -55,7 +55,7 @@ TOUCH = {
 }
 
 
-def make(task, implementation="native", **fields):
+def make(task, /, implementation="native", **fields):
     """The environment of a task; its physics, for those that MuJoCo simulates."""
     physics = {"physics": implementation} if task in SIMULATED else {}
     return TASKS[task](**physics, **FIELDS.get(task, {}) | fields)
@@ -190,17 +190,6 @@ def placed(asset, qpos, qvel=0.0):
     data.qpos[: len(qpos)], data.qvel[:] = qpos, qvel
     mujoco.mj_forward(model, data)
     return model, data
-
-
-def energies(asset, positions, velocities) -> np.ndarray:
-    """As MuJoCo computes them [T], of the joint positions and velocities [T, nv]."""
-    values = []
-    for qpos, qvel in zip(positions, velocities, strict=True):
-        model, data = placed(asset, qpos, qvel)
-        mujoco.mj_energyPos(model, data)
-        mujoco.mj_energyVel(model, data)
-        values.append(data.energy.sum())
-    return np.array(values)
 
 
 def simulated(asset, qpos, qvel, forces, steps) -> tuple[np.ndarray, np.ndarray]:

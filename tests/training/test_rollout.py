@@ -50,7 +50,7 @@ class Draws:
 
 
 def test_an_evaluation_has_returns_and_successes() -> None:
-    """A roll-out is the same episode, with the same draws; an evaluation goes on where it paused."""
+    """A roll-out is the same episode by the same draws; an evaluation goes on where it paused."""
     keys, episode = jax.random.split(jax.random.key(0), 16), Episode(Walk(), steps=5)
     got = evaluate_episodes(episode, Draws(), Params(), keys)
     success = np.asarray(got["success"])

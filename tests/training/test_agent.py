@@ -1,4 +1,4 @@
-"""Learners that use each decision once, and learners of the same field."""
+"""Decisions, observations and updates of an agent, one after another and by its parts."""
 
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
@@ -7,12 +7,15 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+import small
 from jax import Array
 
+from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.data.replay import Replay, unpack
 from hybrid_rl.settings import build as config
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.metrics import outcome
 from hybrid_rl.types import Batch, EnvState, Params, Spec
 
 LENGTH, NUM_ENVS, DECISIONS = 4, 3, 10
@@ -31,19 +34,6 @@ class Clock:
     def step(self, state: EnvState, action: Array) -> EnvState:
         x = state.data + 1
         return state.replace(data=x, obs=x, reward=action[0])
-
-
-class Half:
-    """u = 0.5."""
-
-    def init(self, spec: Spec) -> tuple:
-        return ()
-
-    def act(self, params: Params, state: tuple, obs: Array, key: Array) -> tuple:
-        return jnp.full(1, 0.5), state, {}
-
-    def greedy(self) -> "Half":
-        return self
 
 
 @dataclass(frozen=True)
@@ -72,7 +62,14 @@ class Recorder:
 def agent(every: int = 1) -> Agent:
     """Three environments, whose first six decisions are random."""
     parts = {"recorder": Recorder(every)}
-    return Agent(Episode(Clock(), LENGTH), Half(), parts, Replay(30), NUM_ENVS, random_steps=6)
+    return Agent(
+        Episode(Clock(), LENGTH),
+        ConstantController(0.5),
+        parts,
+        Replay(30),
+        NUM_ENVS,
+        random_steps=6,
+    )
 
 
 def states(agent: Agent) -> tuple[Any, dict[str, Array]]:
@@ -144,7 +141,6 @@ def test_recorded_decisions_teach_the_same_again(every: int) -> None:
 
 
 def test_two_learners_of_one_field_are_refused() -> None:
-    """When the agent is built."""
     with pytest.raises(ValueError, match=r"one and two both learn params\.belief; keep one"):
         replace(agent(), learners={"one": Recorder(), "two": Recorder()})
 
@@ -161,3 +157,38 @@ def test_a_seed_starts_in_the_same_state_whatever_the_method() -> None:
         first.append(jax.jit(with_some.init)(jax.random.key(3)).env.obs)
     np.testing.assert_array_equal(first[0], first[2])
     np.testing.assert_array_equal(first[1], first[2])
+
+
+def same(one: Any, other: Any) -> None:
+    """All leaves of two trees are equal, numbers but for rounding."""
+    one, other = (jax.tree.map(_numbers, each) for each in (one, other))
+    jax.tree.map(lambda a, b: np.testing.assert_allclose(a, b, rtol=1e-5, atol=1e-6), one, other)
+
+
+def _numbers(leaf: Any) -> np.ndarray:
+    is_key = jnp.issubdtype(leaf.dtype, jax.dtypes.prng_key)
+    return np.asarray(jax.random.key_data(leaf) if is_key else leaf)
+
+
+@pytest.mark.turns(3)
+@pytest.mark.parametrize(
+    ("algo", "resets_itself"),
+    [("sac", True), ("hybrid_deterministic", False), ("koopman_active", False)],
+)
+def test_by_hand_they_are_a_step(algo: str, resets_itself: bool) -> None:
+    """Three programs, with the world on the host between them, for two environments."""
+    given = "task=point_mass", "num_envs=2", "episode.steps=3"
+    agent = config.build(small.load(algo, *given)).agent
+    world: Any = jax.jit(jax.vmap(agent.episode.step))
+    parts = agent.decide, agent.observe, agent.learn, agent.step
+    decide, observe, learn, step = map(jax.jit, parts)
+    state = jax.jit(agent.init)(jax.random.key(0))
+    for i in jnp.arange(0, 16, 2):
+        wanted, row = step(state, i)
+        u, state, planned = decide(state, i)
+        now: Any = jax.device_get(world(jax.device_get(state.env), np.asarray(u)))
+        state = observe(state, u, now, wanted.env if resets_itself else None)
+        state, learned = learn(state, i)
+        same(state, wanted)
+        same({**planned, **learned, **outcome(u, now)}, row)
+    assert int(state.memory.count) == 8
