@@ -8,10 +8,9 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from jax import Array
-from scipy.linalg import expm, logm
 
 from hybrid_rl.core import analytic, riccati
-from hybrid_rl.envs.analytic.cart_double_pendulum import FORCE, CartDoublePendulum
+from hybrid_rl.envs.analytic.cart_double_pendulum import CartDoublePendulum
 from hybrid_rl.envs.analytic.no_dynamics import NoDynamics
 from hybrid_rl.envs.analytic.point_mass import PointMass
 from hybrid_rl.envs.analytic.state import Euclidean, fully_observed
@@ -65,28 +64,6 @@ def test_cart_double_pendulum_has_the_poles_of_its_source() -> None:
     A = analytic.at_equilibrium(CartDoublePendulum())[0]
     poles = np.sort(np.log(np.linalg.eigvals(A).real) / 0.01)
     np.testing.assert_allclose(poles, [-10.39, -4.10, 0, 0, 4.10, 10.39], atol=0.01)
-
-
-def test_gains_tend_to_those_of_continuous_time() -> None:
-    """K [N per unit] for Q = diag(5 50 50 20 700 700), R = 1, with very short decisions.
-
-    With decisions of 0.01 s the gains differ by 25%, since an action is held constant.
-    """
-    A, B = analytic.at_equilibrium(CartDoublePendulum())
-    held = np.eye(7)
-    held[:6] = np.hstack([A, B / FORCE])
-    quick = expm(logm(held).real / 1000)
-    K = riccati.regulator(quick[:6, :6], quick[:6, 6:], np.diag(WEIGHTS), np.eye(1)).gain[0]
-    continuous = [2.2361, -492.63, 570.92, 8.2457, -18.982, 88.293]
-    np.testing.assert_allclose(K, continuous, rtol=1e-3)
-
-
-def test_the_point_mass_is_two_double_integrators() -> None:
-    """Its Jacobians, by the matrix exponential."""
-    A, B = analytic.at_equilibrium(PointMass())
-    block = expm(0.1 * np.array([[0, 1.0, 0], [0, 0, 2.0], [0, 0, 0]]))
-    np.testing.assert_allclose(A[np.ix_([0, 2], [0, 2])], block[:2, :2], atol=1e-12)
-    np.testing.assert_allclose(B[[0, 2], 0], block[:2, 2], atol=1e-12)
 
 
 def test_free_coordinates_minimise_the_lyapunov_function() -> None:

@@ -6,7 +6,6 @@ from functools import partial
 
 import gymnasium
 import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
 from gymnasium.error import ResetNeeded
@@ -14,7 +13,6 @@ from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode
 
 from hybrid_rl.envs.adapters.gymnasium import GymnasiumEnv, GymnasiumVectorEnv
-from hybrid_rl.envs.adapters.packed import pack, unpack
 from hybrid_rl.envs.analytic.two_link import TwoLink
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.envs.hopper import Hopper
@@ -82,20 +80,6 @@ def test_infos_are_those_of_single_environments():
             assert set(a["final_info"]) == set(b["final_info"])
             distance = np.linalg.norm(b["final_obs"][:, [0, 2]] - b["final_obs"][:, 4:], axis=1)
             np.testing.assert_allclose(b["final_info"]["distance"], distance, rtol=1e-5)
-
-
-def test_a_state_is_packed_without_loss():
-    """Keys, counters and flags among numbers."""
-    state = jax.jit(TwoLink().reset)(jax.random.key(0))
-    new = jax.random.key(5)
-    more = {"new": new, "key": jnp.array([1, 2**32 - 1], jnp.uint32), "count": jnp.int32(-3)}
-    state = state.replace(info={**state.info, **more})
-    like = jax.eval_shape(lambda: state)
-    again = jax.jit(lambda x: unpack(pack(x, like), like))(state)
-    assert (jax.random.key_data(again.info.pop("new")) == jax.random.key_data(new)).all()
-    state.info.pop("new")
-    jax.tree.map(np.testing.assert_array_equal, again, state)
-    assert jax.tree.map(lambda x: x.dtype, again) == jax.tree.map(lambda x: x.dtype, state)
 
 
 def test_rendering_needs_no_display(can_draw):

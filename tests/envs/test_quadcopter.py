@@ -34,7 +34,7 @@ def _rates(x, u, damping):
     return np.concatenate([(R @ cross).ravel(), R @ v, w_t, v_t])
 
 
-def _integrated(w, v, controls, damping, substeps=20):
+def _integrated(w, v, controls, damping, substeps=4):
     """Gravity, w and v in the body frame [T, 9], by small Runge-Kutta steps."""
     x, observed, dt = np.concatenate([np.eye(3).ravel(), np.zeros(3), w, v]), [], 0.005 / substeps
     for u in controls:

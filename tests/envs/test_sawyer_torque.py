@@ -13,7 +13,6 @@ from worlds import placed
 from hybrid_rl.envs import sawyer_reference
 from hybrid_rl.envs.experts.tracking import ComputedTorque, JointPD
 from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.envs.mujoco.inverse_dynamics import torques
 from hybrid_rl.envs.sawyer_torque import SawyerTorque, asset
 from hybrid_rl.types import Params
 
@@ -134,19 +133,6 @@ def test_gravity_pulls_the_payload_alone():
     pull = data.qfrc_passive - data.qfrc_bias
     np.testing.assert_allclose(pull, jacobian.T @ [0, 0, -9.81 * 1.5], atol=1e-9)
     np.testing.assert_array_equal(model.geom_size, plain.geom_size)
-
-
-@pytest.mark.parametrize(("damping", "payload"), [("none", 0.0), ("maker", 1.5)])
-def test_inverse_dynamics_agree_with_mujoco(damping, payload):
-    name, rng = asset(damping, payload), np.random.default_rng(0)
-    model = mjcf.load(name)
-    data, inverse = mujoco.MjData(model), jax.jit(lambda *x: torques(name, *x))
-    for _ in range(5):
-        x = [scale * rng.normal(size=7).astype(np.float32) for scale in (0.7, 2, 10)]
-        data.qpos[:], data.qvel[:], data.qacc[:] = x
-        mujoco.mj_inverse(model, data)
-        assert not data.nefc  # within the joints' ranges
-        np.testing.assert_allclose(inverse(*x), data.qfrc_inverse, atol=1e-4)
 
 
 def _rmse(kind, **fields):

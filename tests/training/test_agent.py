@@ -1,4 +1,4 @@
-"""Decisions, observations and updates of an agent, one after another and by its parts."""
+"""Decisions, observations and updates of an agent, whole and by its parts; pretraining."""
 
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import small
 from jax import Array
+from tiny import TINY, demonstrate
 
 from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.data.replay import Replay, unpack
@@ -140,6 +141,36 @@ def test_recorded_decisions_teach_the_same_again(every: int) -> None:
     np.testing.assert_array_equal(state.memory.rows, last.memory.rows)
 
 
+@dataclass(frozen=True)
+class Counting:
+    """A learner of the memory that counts its updates, one a round."""
+
+    field: str
+    during_random: bool
+    data: ClassVar[str] = "uniform"
+    batch_size, batches, updates = 1, 1, 1 / NUM_ENVS
+
+    @property
+    def owns(self) -> tuple[str, ...]:
+        return (self.field,)
+
+    def init(self, key: Array, spec: Spec) -> Array:
+        return jnp.int32(0)
+
+    def params(self, state: Array) -> dict:
+        return {self.field: state}
+
+    def update(self, state: Array, params: Params, batch: Batch, key: Array) -> tuple:
+        return state + 1, {}
+
+
+def test_learners_of_the_memory_begin_with_two_rows_or_after_the_random_decisions() -> None:
+    parts = {"early": Counting("belief", True), "late": Counting("policy", False)}
+    learned = states(replace(agent(), learners=parts, random_steps=4 * NUM_ENVS))[0].learners
+    np.testing.assert_array_equal(learned["early"], [0, 0, 1, 2, 3, 4, 5, 6, 7, 8])
+    np.testing.assert_array_equal(learned["late"], [0, 0, 0, 0, 1, 2, 3, 4, 5, 6])
+
+
 def test_two_learners_of_one_field_are_refused() -> None:
     with pytest.raises(ValueError, match=r"one and two both learn params\.belief; keep one"):
         replace(agent(), learners={"one": Recorder(), "two": Recorder()})
@@ -192,3 +223,53 @@ def test_by_hand_they_are_a_step(algo: str, resets_itself: bool) -> None:
         same(state, wanted)
         same({**planned, **learned, **outcome(u, now)}, row)
     assert int(state.memory.count) == 8
+
+
+KEY = jax.random.key(3)
+
+
+@pytest.fixture(scope="module")
+def imitating(tmp_path_factory) -> Agent:
+    """Hybrid learning from demonstrations on the pendulum, pretrained for 3 steps."""
+    line = [*TINY, "algo=hybrid_bc", "pretrain=3", "cloning_learner.batch_size=16"]
+    line += ["cloning_learner.updates=1", "random_steps=0"]
+    folder = tmp_path_factory.mktemp("demonstrations")
+    return config.build(config.load([*line, demonstrate(folder, config.load(line))])).agent
+
+
+@pytest.mark.turns(3)
+def test_pretraining_is_gradient_steps_on_demonstrations(imitating):
+    """The policy is that of a plain loop over the learner's updates."""
+    learners = {"cloning": imitating.learners["cloning"]}
+    alone = replace(imitating, learners=learners, pretrain=3)
+    ahead, still = (
+        jax.jit(a.init)(KEY).learners["cloning"] for a in (alone, replace(alone, pretrain=0))
+    )
+    count = ahead.optimiser[0].count
+    assert (int(count), int(still.optimiser[0].count)) == (3, 0)
+    state, cloning = still, learners["cloning"]
+    update = jax.jit(lambda state, key: cloning.update(state, Params(), None, key)[0])
+    for key in jax.random.split(jax.random.split(KEY, 4)[3], 3):
+        ((_, updating),) = jax.random.split(key, (1, 2))
+        state = update(state, updating)
+    jax.tree.map(lambda a, b: np.testing.assert_allclose(a, b, atol=1e-6), ahead, state)
+
+
+@pytest.mark.turns(3)
+def test_no_key_of_pretraining_is_reused(imitating, monkeypatch):
+    """Its keys differ from those of the initial state and of the first decision."""
+    received = []
+    monkeypatch.setattr(Agent, "_pretrained", lambda _, state, key: received.append(key) or state)
+    state = imitating.init(KEY)
+    first = jax.random.split(KEY, 2 + len(imitating.learners))
+    decision = jax.random.split(state.key, 3 + 2 * imitating.num_envs)
+    steps = jax.random.split(received[0], imitating.pretrain)
+    keys = jnp.concatenate([received[0][None], steps, first, decision])
+    assert len(np.unique(jax.random.key_data(keys), axis=0)) == len(keys)
+
+
+@pytest.mark.turns(3)
+def test_pretraining_needs_demonstrations(imitating):
+    bare = replace(imitating.replay, demonstrations=None)
+    with pytest.raises(ValueError, match="pretrain=3: the memory has no demonstrations"):
+        replace(imitating, replay=bare)

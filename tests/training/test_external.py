@@ -120,7 +120,7 @@ def test_what_the_first_step_returns_is_checked_before_a_run(kind, method, retur
     wrong = type("Wrong", (kind,), {method: lambda self, *_, **options: returned})
     with pytest.raises((UsageError, WorldError), match=re.escape(line)) as error:
         External(make=wrong)
-    assert str(error.value).startswith(f"Wrong: {method}: ")
+    assert "Wrong: " in str(error.value)
     assert "\n" not in str(error.value)
 
 

@@ -154,11 +154,10 @@ class Drawn(Count):
         return *rest, {**info, "is_success": np.float32(self.time == 3)}
 
 
-@pytest.mark.parametrize(("processes", "shape"), [(False, (2, 4)), (True, (1, 2))])
-def test_an_evaluation_pays_each_episode_until_its_own_end(processes, shape):
+def test_an_evaluation_pays_each_episode_until_its_own_end():
     """Also where the others of the call go on."""
-    episode = Episode(External(make=Drawn, processes=processes), 9)
-    keys = jax.random.split(jax.random.key(2), shape)
+    episode = Episode(External(make=Drawn), 9)
+    keys = jax.random.split(jax.random.key(2), (2, 4))
     evaluator = HostEvaluator(episode, ConstantController(0.5), Params(), keys)
     seeds = [seed_of(*map(int, row)) for row in jax.random.key_data(keys).reshape(-1, 2)]
     lengths = [1 + Drawn().reset(seed=seed)[0][0] for seed in seeds]

@@ -40,5 +40,5 @@ def test_what_is_paid_is_one_number(name, method):
 
 def test_a_method_that_is_not_there_is_named():
     other: Any = Mine(reward_of=lambda x, u, after: x[0])
-    with pytest.raises(ValueError, match="Mine: has no excess"):
+    with pytest.raises(ValueError, match=r"Mine.* has no excess"):
         Episode(Pendulum(), constraint=other)
