@@ -76,12 +76,18 @@ def test_both_doors_give_the_same_learners():
 
 
 @cache
-def filled(num_envs: int = 1, rounds: int = ROUNDS) -> tuple[Any, Any]:
-    """A loop and its state after some decisions in `Count`."""
+def compiled(num_envs: int) -> tuple[Any, Any]:
+    """A loop in `Count` and its program."""
     agent = config.build(small.load("sac", "task=point_mass", f"num_envs={num_envs}")).agent
     loop = loop_of(replace(agent, episode=Episode(counting(), STEPS)), (0, 1), ROUNDS)
-    state = loop.init()
-    return loop, loop.compile(state)(state, jnp.int32(0), jnp.int32(rounds))[0]
+    return loop, loop.compile(loop.init())
+
+
+def filled(num_envs: int, rounds: int = ROUNDS) -> tuple[Any, Any]:
+    """A loop and its state after some decisions."""
+    loop, program = compiled(num_envs)
+    program.copies = None  # new ones
+    return loop, program(loop.init(), jnp.int32(0), jnp.int32(rounds))[0]
 
 
 @pytest.mark.parametrize("num_envs", [1, 2])
@@ -101,10 +107,11 @@ def test_a_row_leads_to_the_next_step_of_its_episode(num_envs):
 
 
 def test_a_resumed_run_marks_where_its_episode_was_cut():
-    loop, state = filled(rounds=3)
+    loop, state = filled(1, rounds=3)
     count = np.array(state.memory.count)
-    again = loop.compile(state)
-    state, _ = again(state, jnp.int32(3), jnp.int32(1))
+    program = compiled(1)[1]
+    program.copies = None
+    state, _ = program(state, jnp.int32(3), jnp.int32(1))
     rows = unpack(state.memory.rows[0, :4, 0], loop.agent.spec)
     assert (state.memory.count == count + 1).all()
     assert rows.truncated.tolist() == [0, 0, 1, 0]
