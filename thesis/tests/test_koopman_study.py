@@ -11,7 +11,6 @@ from studied import code, drawn, trained
 from hybrid_rl.analysis import drawing
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.envs.analytic.quadcopter_se3 import DT
-from hybrid_rl.errors import UsageError
 from hybrid_rl.thesis.studies import (
     embeddings,
     fall_frames,
@@ -86,19 +85,6 @@ def test_log_det_of_the_information_by_hand() -> None:
     s = np.array([[[2.0, 0.0], [0.0, 3.0]]])
     np.testing.assert_allclose(falls.log_det(s, 1.0), np.log(5 * 10))
     np.testing.assert_allclose(falls.trace(s), [[4, 13]])
-
-
-def test_other_starts_are_an_error_in_one_line(tmp_path) -> None:
-    """Other trials, other sizes; sensor noise of 0.1 explains a difference of 0.1."""
-    a, b = tmp_path / "a", tmp_path / "b"
-    error = np.zeros((2, 11))
-    moved = fall(error)
-    moved.obs[1, 0, 3] = 0.1
-    with pytest.raises(UsageError, match=r"b: trial 1 starts elsewhere than in .*a; train with"):
-        falls.check_starts([fall(error), moved], [a, b])
-    with pytest.raises(UsageError, match=r"has 2 trials of 8 decisions where .* 2 trials of 10"):
-        falls.check_starts([fall(error), fall(error[:, :9])], [a, b])
-    falls.check_starts([fall(error), moved._replace(std=0.1)], [a, b])
 
 
 def test_logged_twist_holds_between_two_rows(tmp_path) -> None:
