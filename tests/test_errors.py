@@ -164,7 +164,7 @@ USAGE = [  # overrides of train, words of the line
     ("++planner.horizn=3", "planner.horizn: hybrid_stochastic has no such key"),
     ("total_steps", "total_steps: has no value; write total_steps=VALUE"),
     ("physics=bullet", "physics=bullet: choose one of auto, native, mjx, warp"),
-    ("task=cartpole physics=warp", "physics='warp' needs"),
+    ("task=cartpole physics=warp", "physics=warp: must have an NVIDIA GPU"),
     *((f"{key}=0", f"{key}=0: {COUNT}") for key in ("total_steps", "planner.samples")),
     ("policy_learner.batch_size=2.5", "policy_learner.batch_size=2.5: must be a whole number"),
     ("num_envs=2.5", f"num_envs=2.5: {COUNT}"),
@@ -243,7 +243,6 @@ USAGE = [  # overrides of train, words of the line
     ("run_dir=", "run_dir=: is empty; give a folder, or leave it out"),
     ("total_steps=2147483648", "total_steps=2147483648: must be at most 2147483647: decisions"),
     ("total_steps=99999999999999999999", "must be at most 2147483647: decisions are counted in"),
-    ("eval_episodes=100000000000", "eval_episodes=100000000000: their worlds would take "),
     ("run_dir=/dev/null/run", "run_dir=/dev/null/run: cannot be written to (Not a directory)"),
 ]
 

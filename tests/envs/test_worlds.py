@@ -195,7 +195,7 @@ BOX = (0.5, 0.5, 0, 0.1, 0.1)  # an object of the contact plane without its roun
     ("task", "given", "line"),
     [
         ("hopper", {"physics": "bullet"}, r"physics=bullet: .* native, mjx, warp"),
-        ("hopper", {"physics": "warp"}, r"physics='warp' needs"),
+        ("hopper", {"physics": "warp"}, "physics=warp: must have an NVIDIA GPU"),
         ("hopper", {"velocity_limit": 0.0}, r"velocity_limit=0.0: must be above 0, or null"),
         ("halfcheetah", {"motors": [1.0, 1.0]}, r"motors=.*: must be 1 or 6 numbers"),
         ("quadcopter", {"asset": "x"}, r"asset=x: no model"),
