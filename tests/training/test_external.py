@@ -1,5 +1,6 @@
 """Gymnasium environments that are wrong, or go wrong: one line says what they must be."""
 
+import re
 from typing import Any, ClassVar
 
 import gymnasium
@@ -13,9 +14,6 @@ from hosted import Count, counting
 
 from hybrid_rl.envs.adapters.external import External, check_world
 from hybrid_rl.errors import UsageError, WorldError
-from hybrid_rl.fields import FieldError
-from hybrid_rl.settings import build as config
-from hybrid_rl.settings.values import check
 from hybrid_rl.types import Spec
 
 STEPS = 5  # decisions of an episode
@@ -34,9 +32,8 @@ STEPS = 5  # decisions of an episode
 def test_what_goes_wrong_in_an_environment_is_one_line(fail, line):
     copies = counting(fail=fail).copies([1, 2], STEPS)
     copies.reset()
-    with pytest.raises(WorldError) as error:
+    with pytest.raises(WorldError, match=re.escape(line)) as error:
         list(map(copies.step, np.zeros((3, 2, 1))))
-    assert line in str(error.value)
     assert "\n" not in str(error.value)
 
 
@@ -69,11 +66,6 @@ def test_spaces_of_any_form_are_flattened():
         External(id="CartPole-v1")
 
 
-def test_an_id_that_is_a_number_is_one_line():
-    with pytest.raises(UsageError, match=r"env\.id=3: must be a word"):
-        check(config.load(["task=gymnasium", "algo=sac", "env.id=3"]))
-
-
 def test_an_action_of_whole_numbers_is_the_nearest():
     class Whole(Count):
         action_space = Box(-2, 4, (1,), np.int32)
@@ -91,39 +83,20 @@ def test_a_time_limit_among_the_wrappers_is_that_of_the_episode():
 
 
 @pytest.mark.parametrize(
-    ("obs", "line"), [({"a": np.ones((2, 2))}, "KeyError: 'b'"), (0.0, "Error")]
-)
-@pytest.mark.parametrize("method", ["reset", "step"])
-def test_an_observation_that_cannot_be_flattened_is_one_line(method, obs, line):
-    returned = (obs, {}) if method == "reset" else (obs, 0.0, False, False, {})
-    kind = type("Wrong", (Odd,), {method: lambda self, *_, **options: returned})
-    with pytest.raises(UsageError) as error:
-        External(make=kind)
-    assert line in str(error.value)
-    assert "\n" not in str(error.value)
-
-
-@pytest.mark.parametrize(
     ("given", "line"),
     [
         ({}, "give an id of Gymnasium, or env.make=MODULE:CLASS"),
-        ({"id": "Hoper-v5"}, "env.id=Hoper-v5: NameNotFound: Environment `Hoper` doesn't exist"),
+        ({"id": "Hoper-v5"}, "env.id=Hoper-v5: NameNotFound: "),
         ({"id": "CartPole-v1"}, "CartPole-v1: has actions Discrete(2)"),
         ({"make": Odd, "kwargs": {"actions": Box(-np.inf, 1, (1,))}}, "finite bounds"),
         ({"make": "nowhere:Env"}, "env.make=nowhere:Env: cannot be imported (No module named"),
-        ({"make": "./reach.py:Reach"}, "cannot be imported (give MODULE:NAME)"),
         ({"make": "json:loads"}, "env.make=json:loads: TypeError"),
-        ({"make": 3}, "env.make=3: TypeError: 'int' object is not callable"),
-        ({"make": Odd, "kwargs": {"actions": Box(-1, 1, (0,))}}, "of one number or more"),
-        ({"make": type("Timed", (Odd,), {"dt": "fast"})}, "Timed: does not say its time step; add"),
-        ({"id": "Pendulum-v1", "kwargs": 3}, "env.kwargs=3: must be {KEY: VALUE}"),
-        ({"id": "Pendulum-v1", "timeout_s": 1.0}, "goes with env.processes=true"),
+        ({"make": type("Timeless", (Count,), {"metadata": {}})}, "does not say its time step"),
     ],
 )
 def test_what_is_no_usable_environment_is_one_line(given, line):
-    with pytest.raises(UsageError) as error:
+    with pytest.raises(UsageError, match=re.escape(line)) as error:
         External(**given)
-    assert line in str(error.value)
     assert "\n" not in str(error.value)
 
 
@@ -139,7 +112,6 @@ def test_what_is_no_usable_environment_is_one_line(given, line):
     ],
 )
 def test_what_the_first_step_returns_is_checked_before_a_run(method, returned, line):
-
     class Wrong(Count): ...
 
     def instead(self: Wrong, *given: Any, **options: Any) -> Any:
@@ -147,45 +119,14 @@ def test_what_the_first_step_returns_is_checked_before_a_run(method, returned, l
         return returned
 
     setattr(Wrong, method, instead)
-    with pytest.raises(WorldError) as error:
+    with pytest.raises(WorldError, match=re.escape(f"Wrong: {method}: {line}")) as error:
         check_world(External(make=Wrong))
-    assert str(error.value).startswith(f"Wrong: {method}: {line}")
-
-
-def test_an_environment_without_a_time_step_is_shown_where_to_write_it():
-    with pytest.raises(UsageError, match=r"add env.dt=0.05, .* or metadata = .* to its class"):
-        External(make=type("Timeless", (Count,), {"metadata": {}}))
-    with pytest.raises(UsageError, match=r"Fast: does not say its time step; add env.dt=0.05"):
-        External(make=type("Fast", (Count,), {"metadata": {"render_fps": "fast"}}))
-    with pytest.raises(FieldError, match=r"dt=0: must be above 0"):
-        External(make=Count, dt=0)
+    assert "\n" not in str(error.value)
 
 
 def test_an_id_without_a_version_has_the_time_limit_of_the_newest():
     with pytest.warns(UserWarning, match="latest versioned"):
         assert External(id="Pendulum").known.steps == 200
-
-
-def test_a_video_of_an_environment_that_takes_no_render_mode_says_what_it_needs():
-    copies = counting().copies([1], STEPS, render_mode="rgb_array")
-    with pytest.raises(WorldError, match="Count: for a video, give it `def __init__"):
-        copies.reset()
-
-
-@pytest.mark.parametrize(
-    ("render", "line"),
-    [
-        (gymnasium.Env.render, "Wrong: render: NotImplementedError"),
-        (lambda self: None, "Wrong: render: returns NoneType; for a video, give it `def __init__"),
-    ],
-)
-def test_a_video_of_an_environment_without_a_picture_says_what_it_needs(render, line):
-    kind = type("Wrong", (Count,), {"render": render})
-    copies = External(make=kind).copies([1], STEPS)
-    copies.reset()
-    with pytest.raises(WorldError) as error:
-        copies.picture()
-    assert str(error.value).startswith(line)
 
 
 def test_planning_on_the_environment_itself_is_refused():

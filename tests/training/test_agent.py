@@ -1,4 +1,4 @@
-"""Learners that use each decision once, and learners of the same field."""
+"""Decisions, observations and updates of an agent, whole and by its parts; pretraining."""
 
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
@@ -7,12 +7,16 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+import small
 from jax import Array
+from tiny import TINY, demonstrate
 
+from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.data.replay import Replay, unpack
 from hybrid_rl.settings import build as config
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.metrics import outcome
 from hybrid_rl.types import Batch, EnvState, Params, Spec
 
 LENGTH, NUM_ENVS, DECISIONS = 4, 3, 10
@@ -31,19 +35,6 @@ class Clock:
     def step(self, state: EnvState, action: Array) -> EnvState:
         x = state.data + 1
         return state.replace(data=x, obs=x, reward=action[0])
-
-
-class Half:
-    """u = 0.5."""
-
-    def init(self, spec: Spec) -> tuple:
-        return ()
-
-    def act(self, params: Params, state: tuple, obs: Array, key: Array) -> tuple:
-        return jnp.full(1, 0.5), state, {}
-
-    def greedy(self) -> "Half":
-        return self
 
 
 @dataclass(frozen=True)
@@ -72,7 +63,14 @@ class Recorder:
 def agent(every: int = 1) -> Agent:
     """Three environments, whose first six decisions are random."""
     parts = {"recorder": Recorder(every)}
-    return Agent(Episode(Clock(), LENGTH), Half(), parts, Replay(30), NUM_ENVS, random_steps=6)
+    return Agent(
+        Episode(Clock(), LENGTH),
+        ConstantController(0.5),
+        parts,
+        Replay(30),
+        NUM_ENVS,
+        random_steps=6,
+    )
 
 
 def states(agent: Agent) -> tuple[Any, dict[str, Array]]:
@@ -143,8 +141,37 @@ def test_recorded_decisions_teach_the_same_again(every: int) -> None:
     np.testing.assert_array_equal(state.memory.rows, last.memory.rows)
 
 
+@dataclass(frozen=True)
+class Counting:
+    """A learner of the memory that counts its updates, one a round."""
+
+    field: str
+    during_random: bool
+    data: ClassVar[str] = "uniform"
+    batch_size, batches, updates = 1, 1, 1 / NUM_ENVS
+
+    @property
+    def owns(self) -> tuple[str, ...]:
+        return (self.field,)
+
+    def init(self, key: Array, spec: Spec) -> Array:
+        return jnp.int32(0)
+
+    def params(self, state: Array) -> dict:
+        return {self.field: state}
+
+    def update(self, state: Array, params: Params, batch: Batch, key: Array) -> tuple:
+        return state + 1, {}
+
+
+def test_learners_of_the_memory_begin_with_two_rows_or_after_the_random_decisions() -> None:
+    parts = {"early": Counting("belief", True), "late": Counting("policy", False)}
+    learned = states(replace(agent(), learners=parts, random_steps=4 * NUM_ENVS))[0].learners
+    np.testing.assert_array_equal(learned["early"], [0, 0, 1, 2, 3, 4, 5, 6, 7, 8])
+    np.testing.assert_array_equal(learned["late"], [0, 0, 0, 0, 1, 2, 3, 4, 5, 6])
+
+
 def test_two_learners_of_one_field_are_refused() -> None:
-    """When the agent is built."""
     with pytest.raises(ValueError, match=r"one and two both learn params\.belief; keep one"):
         replace(agent(), learners={"one": Recorder(), "two": Recorder()})
 
@@ -161,3 +188,88 @@ def test_a_seed_starts_in_the_same_state_whatever_the_method() -> None:
         first.append(jax.jit(with_some.init)(jax.random.key(3)).env.obs)
     np.testing.assert_array_equal(first[0], first[2])
     np.testing.assert_array_equal(first[1], first[2])
+
+
+def same(one: Any, other: Any) -> None:
+    """All leaves of two trees are equal, numbers but for rounding."""
+    one, other = (jax.tree.map(_numbers, each) for each in (one, other))
+    jax.tree.map(lambda a, b: np.testing.assert_allclose(a, b, rtol=1e-5, atol=1e-6), one, other)
+
+
+def _numbers(leaf: Any) -> np.ndarray:
+    is_key = jnp.issubdtype(leaf.dtype, jax.dtypes.prng_key)
+    return np.asarray(jax.random.key_data(leaf) if is_key else leaf)
+
+
+@pytest.mark.turns(3)
+@pytest.mark.parametrize(
+    ("algo", "resets_itself"),
+    [("sac", True), ("hybrid_deterministic", False), ("koopman_active", False)],
+)
+def test_by_hand_they_are_a_step(algo: str, resets_itself: bool) -> None:
+    """Three programs, with the world on the host between them, for two environments."""
+    given = "task=point_mass", "num_envs=2", "episode.steps=3"
+    agent = config.build(small.load(algo, *given)).agent
+    world: Any = jax.jit(jax.vmap(agent.episode.step))
+    parts = agent.decide, agent.observe, agent.learn, agent.step
+    decide, observe, learn, step = map(jax.jit, parts)
+    state = jax.jit(agent.init)(jax.random.key(0))
+    for i in jnp.arange(0, 16, 2):
+        wanted, row = step(state, i)
+        u, state, planned = decide(state, i)
+        now: Any = jax.device_get(world(jax.device_get(state.env), np.asarray(u)))
+        state = observe(state, u, now, wanted.env if resets_itself else None)
+        state, learned = learn(state, i)
+        same(state, wanted)
+        same({**planned, **learned, **outcome(u, now)}, row)
+    assert int(state.memory.count) == 8
+
+
+KEY = jax.random.key(3)
+
+
+@pytest.fixture(scope="module")
+def imitating(tmp_path_factory) -> Agent:
+    """Hybrid learning from demonstrations on the pendulum, pretrained for 3 steps."""
+    line = [*TINY, "algo=hybrid_bc", "pretrain=3", "cloning_learner.batch_size=16"]
+    line += ["cloning_learner.updates=1", "random_steps=0"]
+    folder = tmp_path_factory.mktemp("demonstrations")
+    return config.build(config.load([*line, demonstrate(folder, config.load(line))])).agent
+
+
+@pytest.mark.turns(3)
+def test_pretraining_is_gradient_steps_on_demonstrations(imitating):
+    """The policy is that of a plain loop over the learner's updates."""
+    learners = {"cloning": imitating.learners["cloning"]}
+    alone = replace(imitating, learners=learners, pretrain=3)
+    ahead, still = (
+        jax.jit(a.init)(KEY).learners["cloning"] for a in (alone, replace(alone, pretrain=0))
+    )
+    count = ahead.optimiser[0].count
+    assert (int(count), int(still.optimiser[0].count)) == (3, 0)
+    state, cloning = still, learners["cloning"]
+    update = jax.jit(lambda state, key: cloning.update(state, Params(), None, key)[0])
+    for key in jax.random.split(jax.random.split(KEY, 4)[3], 3):
+        ((_, updating),) = jax.random.split(key, (1, 2))
+        state = update(state, updating)
+    jax.tree.map(lambda a, b: np.testing.assert_allclose(a, b, atol=1e-6), ahead, state)
+
+
+@pytest.mark.turns(3)
+def test_no_key_of_pretraining_is_reused(imitating, monkeypatch):
+    """Its keys differ from those of the initial state and of the first decision."""
+    received = []
+    monkeypatch.setattr(Agent, "_pretrained", lambda _, state, key: received.append(key) or state)
+    state = imitating.init(KEY)
+    first = jax.random.split(KEY, 2 + len(imitating.learners))
+    decision = jax.random.split(state.key, 3 + 2 * imitating.num_envs)
+    steps = jax.random.split(received[0], imitating.pretrain)
+    keys = jnp.concatenate([received[0][None], steps, first, decision])
+    assert len(np.unique(jax.random.key_data(keys), axis=0)) == len(keys)
+
+
+@pytest.mark.turns(3)
+def test_pretraining_needs_demonstrations(imitating):
+    bare = replace(imitating.replay, demonstrations=None)
+    with pytest.raises(ValueError, match="pretrain=3: the memory has no demonstrations"):
+        replace(imitating, replay=bare)

@@ -7,7 +7,8 @@ import sys
 import gymnasium
 import numpy as np
 import pytest
-from test_adapters import play
+from test_gymnasium import play
+from worlds import OWN_TEST, TASKS
 
 from hybrid_rl.envs import gym
 from hybrid_rl.envs.adapters.gymnasium import GymnasiumEnv, GymnasiumVectorEnv
@@ -21,10 +22,8 @@ ID = "hybrid_rl/"
 
 def test_every_task_has_an_id_and_its_time_limit():
     """A decision of the cartpole's task is two of its environment's."""
-    outside = {"gymnasium", "playground", "robot", "online"}
-    files = {path.stem for path in config.CONF.glob("task/*.yaml")} - outside
     targets = [spec.kwargs["world"] for name, spec in gymnasium.registry.items() if ID in name]
-    assert len(targets) == len(set(targets)) == len(files)
+    assert len(targets) == len(set(targets)) == len({*TASKS, *OWN_TEST})
     assert gymnasium.spec("hybrid_rl/Walker2d").max_episode_steps == 1000
     assert gymnasium.spec("hybrid_rl/Cartpole").max_episode_steps == 2 * 500
     assert GymnasiumEnv(TwoLink()).steps == GymnasiumVectorEnv(TwoLink(), 2).steps == 200

@@ -6,7 +6,6 @@ from functools import partial
 
 import gymnasium
 import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
 from gymnasium.error import ResetNeeded
@@ -14,7 +13,6 @@ from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode
 
 from hybrid_rl.envs.adapters.gymnasium import GymnasiumEnv, GymnasiumVectorEnv
-from hybrid_rl.envs.adapters.packed import pack, unpack
 from hybrid_rl.envs.analytic.two_link import TwoLink
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.envs.hopper import Hopper
@@ -23,34 +21,24 @@ from hybrid_rl.envs.mujoco import offscreen
 pytestmark = pytest.mark.turns(2)
 
 
-def can_draw():
-    """Whether this machine can render."""
-    try:
-        offscreen.backend()
-    except offscreen.NoGraphicsError:
-        return False
-    return True
-
-
 @pytest.mark.filterwarnings("ignore:.*Box observation space (min|max)imum value is:UserWarning")
-@pytest.mark.parametrize("name", ["HalfCheetah", "Hopper", "TwoLink"])
-def test_gymnasium_accepts_an_environment(name):
+@pytest.mark.parametrize("name", ["HalfCheetah", "TwoLink"])
+def test_gymnasium_accepts_an_environment(name, can_draw):
     """By its id, whose environment has a `spec`."""
     env = gymnasium.make(f"hybrid_rl/{name}", render_mode="rgb_array")
-    check_env(env.unwrapped, skip_render_check=not can_draw())
+    check_env(env.unwrapped, skip_render_check=not can_draw)
     env.close()
 
 
 def test_wrong_use_is_refused():
     one, many = GymnasiumEnv(TwoLink()), GymnasiumVectorEnv(TwoLink(), 3)
     for call in (one.render, lambda: one.step(np.zeros(2)), lambda: many.step(np.zeros((3, 2)))):
-        with pytest.raises(ResetNeeded, match=r"call reset\(\) first"):
+        with pytest.raises(ResetNeeded):
             call()
     one.reset(seed=0), many.reset(seed=0)
-    with pytest.raises(ValueError, match=r"action has the shape \(3,\); \(2,\) is needed"):
-        one.step(np.zeros(3))
-    with pytest.raises(ValueError, match=r"action has the shape \(2,\); \(3, 2\) is needed"):
-        many.step(np.zeros(2))
+    for env, action in ((one, np.zeros(3)), (many, np.zeros(2))):
+        with pytest.raises(ValueError, match="action"):
+            env.step(action)
 
 
 def test_info_has_the_metrics():
@@ -83,23 +71,9 @@ def test_infos_are_those_of_single_environments():
             np.testing.assert_allclose(b["final_info"]["distance"], distance, rtol=1e-5)
 
 
-def test_a_state_is_packed_without_loss():
-    """Keys, counters and flags among numbers."""
-    state = jax.jit(TwoLink().reset)(jax.random.key(0))
-    new = jax.random.key(5)
-    more = {"new": new, "key": jnp.array([1, 2**32 - 1], jnp.uint32), "count": jnp.int32(-3)}
-    state = state.replace(info={**state.info, **more})
-    like = jax.eval_shape(lambda: state)
-    again = jax.jit(lambda x: unpack(pack(x, like), like))(state)
-    assert (jax.random.key_data(again.info.pop("new")) == jax.random.key_data(new)).all()
-    state.info.pop("new")
-    jax.tree.map(np.testing.assert_array_equal, again, state)
-    assert jax.tree.map(lambda x: x.dtype, again) == jax.tree.map(lambda x: x.dtype, state)
-
-
-def test_rendering_needs_no_display():
+def test_rendering_needs_no_display(can_draw):
     """Of two environments in turn; the image changes as the robot moves."""
-    if not can_draw():
+    if not can_draw:
         return
     one, two = GymnasiumEnv(HalfCheetah("native")), GymnasiumEnv(Hopper("native"))
     for env in (one, two):
@@ -120,33 +94,9 @@ def test_rendering_needs_no_display():
     assert two.render().std() > 10
 
 
-def test_without_a_backend_rendering_raises_one_line(monkeypatch):
-    """MuJoCo's own renderer would end the process."""
-    monkeypatch.setattr(offscreen, "TRIAL", "raise SystemExit(1)")
-    monkeypatch.setattr(sys, "platform", "linux")
-    offscreen.chosen.cache_clear()
-    env = GymnasiumEnv(Hopper("native"))
-    env.reset(seed=0)
-    with pytest.raises(offscreen.NoGraphicsError, match="install libegl1 or libosmesa6"):
-        env.render()
-    offscreen.chosen.cache_clear()
-    env.close()
-
-
-def test_an_environment_without_a_scene_cannot_be_rendered():
-    class Bare:
-        spec, reset = TwoLink().spec, TwoLink().reset
-        step = None
-
-    env = GymnasiumEnv(Bare(), steps=0)
-    env.reset()
-    with pytest.raises(ValueError, match="has no `scene` and no `pose`"):
-        env.render()
-
-
-@pytest.mark.parametrize("env", [HalfCheetah("native"), Hopper("native")])
-def test_the_adapter_steps_the_environment(env):
+def test_the_adapter_steps_the_environment():
     """200 decisions of random actions, without resets."""
+    env = Hopper("native")
     adapter = GymnasiumEnv(env, steps=200)
     adapter.reset(seed=0)
     adapter.action_space.seed(0)
@@ -161,14 +111,6 @@ def test_the_adapter_steps_the_environment(env):
         assert info == {"speed": pytest.approx(float(state.metrics["speed"]), rel=1e-5)}
         assert terminated == bool(state.terminated)
         assert truncated == (t == 199 and not terminated)
-
-
-def test_a_seed_repeats_the_initial_state():
-    env = GymnasiumEnv(Hopper("native"))
-    first, again, other = (env.reset(seed=s)[0] for s in (1, 1, 2))
-    np.testing.assert_array_equal(first, again)
-    assert (first != other).any()
-    assert (env.reset()[0] != other).any()
 
 
 def play(envs, seed, count):
@@ -198,25 +140,30 @@ def test_a_vector_environment_resets_in_the_same_step():
 
 
 def test_environment_i_has_seed_plus_i():
-    """And the same seed gives the same episodes."""
-    many = [o for o, *_ in play(GymnasiumVectorEnv(Hopper("native"), 3, steps=9), 4, 30)]
-    again = [o for o, *_ in play(GymnasiumVectorEnv(Hopper("native"), 3, steps=9), 4, 30)]
-    shifted = [o for o, *_ in play(GymnasiumVectorEnv(Hopper("native"), 3, steps=9), [5, 6, 7], 1)]
-    np.testing.assert_array_equal(many, again)
-    assert (shifted[0] != many[0]).any()
-    first, _ = GymnasiumVectorEnv(Hopper("native"), 3).reset(seed=4)
-    second, _ = GymnasiumVectorEnv(Hopper("native"), 3).reset(seed=5)
+    """The same seed gives the same episodes, which Gymnasium's own wrapper counts."""
+
+    def seen(seed):
+        envs = GymnasiumVectorEnv(Hopper("native"), 3, steps=6)
+        counted = gymnasium.wrappers.vector.RecordEpisodeStatistics(envs)
+        steps = list(play(counted, seed, 12))
+        lengths = [i["episode"]["l"][i["_episode"]] for *_, i in steps if "episode" in i]
+        assert np.concatenate(lengths).tolist() == [6] * 6
+        return [obs for obs, *_ in steps], envs.reset(seed=seed)[0]
+
+    (path, first), (again, _), (other, second) = seen(4), seen(4), seen(5)
+    np.testing.assert_array_equal(path, again)
     np.testing.assert_array_equal(first[1:], second[:2])
+    assert (path[0] != other[0]).any()
 
 
-def test_gymnasium_counts_episodes():
-    envs = gymnasium.wrappers.vector.RecordEpisodeStatistics(
-        GymnasiumVectorEnv(Hopper("native"), 4, steps=6)
-    )
-    lengths = [
-        n
-        for *_, infos in play(envs, 0, 12)
-        if "episode" in infos
-        for n in infos["episode"]["l"][infos["_episode"]]
-    ]
-    assert lengths == [6] * 8
+def test_without_a_backend_rendering_raises_one_line(monkeypatch):
+    """MuJoCo's own renderer would end the process."""
+    monkeypatch.setattr(offscreen, "TRIAL", "raise SystemExit(1)")
+    monkeypatch.setattr(sys, "platform", "linux")
+    offscreen.chosen.cache_clear()
+    env = GymnasiumEnv(Hopper("native"))
+    env.reset(seed=0)
+    with pytest.raises(offscreen.NoGraphicsError, match="install libegl1 or libosmesa6"):
+        env.render()
+    offscreen.chosen.cache_clear()
+    env.close()

@@ -1,97 +1,25 @@
-"""Manipulation: commands, rewards, initial states, and experts that succeed."""
+"""Panda's stacking: rewards, its hand, what it observes, and an expert that succeeds."""
 
 import jax
 import jax.numpy as jnp
-import mujoco
 import numpy as np
 import pytest
-from experts import EXPERTS, play
-from worlds import IMPLEMENTATIONS, jitted, make
+from experts import EXPERTS, over_implementations, play
+from worlds import jitted, make, many
 
 from hybrid_rl.envs.experts.stack import StackController
-from hybrid_rl.envs.mujoco.kinematics import rotate_towards
 from hybrid_rl.envs.panda_stack import TOOL, PandaStack
-from hybrid_rl.envs.sawyer_push import HEIGHT, HOME, TIP, SawyerPush
 from hybrid_rl.types import Params
 
 pytestmark = pytest.mark.turns(2)
 
 
-def over_implementations(task):
-    """Ids as of the other tests of the task, which share its compiled program."""
-    ids = [f"{task}-{implementation}" for implementation in IMPLEMENTATIONS]
-    return pytest.mark.parametrize("implementation", IMPLEMENTATIONS, ids=ids)
-
-
-def test_the_rod_follows_its_velocity_command():
-    """2 s along y at 0.1 m/s, at constant height and orientation."""
-    env = SawyerPush("native", smoothing=0.0)
-    state = jitted(env, "reset")(jax.random.key(0))
-    aside = state.data.qpos.at[7:9].set(jnp.array([0.7, 0.4]))
-    state = state.replace(data=state.data.replace(qpos=aside))
-    begin, upright = TIP.constant_pose(HOME)
-    step = jitted(env, "step")
-    for _ in range(20):
-        state = step(state, jnp.array([0.0, 0.1 / 0.15]))
-    tip, rotation, _ = TIP.pose(state.data.qpos)
-    np.testing.assert_allclose(tip - begin, [0.0, 0.2, 0.0], atol=0.01)
-    assert abs(tip[2] - begin[2]) < 1e-3
-    assert jnp.abs(rotate_towards(rotation, jnp.asarray(upright), 1.0)).max() < np.radians(0.5)
-    for _ in range(40):
-        state = step(state, jnp.array([1.0, 1.0]))
-    tip = TIP.pose(state.data.qpos)[0]
-    np.testing.assert_allclose(tip[:2], env.high, atol=0.02)
-
-
 def test_the_velocity_filter():
-    sawyer, panda = SawyerPush("native"), PandaStack("native", grip="action")
-    state = jitted(sawyer, "reset")(jax.random.key(0))
-    state = jitted(sawyer, "step")(state, jnp.array([1.0, -1.0]))
-    np.testing.assert_allclose(state.info["velocity"], [0.03, -0.03], rtol=1e-5)
-    state = jitted(sawyer, "step")(state, jnp.zeros(2))
-    np.testing.assert_allclose(state.info["velocity"], [0.024, -0.024], rtol=1e-5)
-    state = jitted(panda, "reset")(jax.random.key(0))
-    state = jitted(panda, "step")(state, jnp.array([1.0, 0.0, 0.0, 1.0]))
+    env = PandaStack("native", grip="action")
+    state = jitted(env, "reset")(jax.random.key(0))
+    state = jitted(env, "step")(state, jnp.array([1.0, 0.0, 0.0, 1.0]))
     np.testing.assert_allclose(state.info["velocity"][0], 0.15 * (1 - np.exp(-0.5)), rtol=1e-5)
     assert state.info["closed"] == 1.0
-
-
-def _sawyer(tip_to_block, block_to_target, action, **fields):
-    """The state after one decision with the block and the target at these offsets."""
-    env = SawyerPush("native", **fields)
-    state = jitted(env, "reset")(jax.random.key(0))
-    block = TIP.pose(state.data.qpos)[0][:2] + jnp.asarray(tip_to_block)
-    qpos = state.data.qpos.at[7:9].set(block)
-    info = {**state.info, "target": block + jnp.asarray(block_to_target)}
-    return jitted(env, "step")(state.replace(data=state.data.replace(qpos=qpos), info=info), action)
-
-
-def test_push_reward():
-    state = _sawyer((0.3, 0.4), (0.0, 0.1), jnp.zeros(2))
-    np.testing.assert_allclose(state.reward, -5 * 0.1 - 10 * 0.5, atol=2e-3)
-    np.testing.assert_allclose(state.obs, [3.0, 4.0, 0.0, -1.0], atol=2e-3)
-    moving = _sawyer((0.3, 0.4), (0.0, 0.1), jnp.array([0.0, 1.0]), speed=0.0)
-    np.testing.assert_allclose(moving.reward - state.reward, -0.01, atol=1e-4)
-    assert not state.terminated
-    assert _sawyer((0.3, 0.4), (0.0, 0.049), jnp.zeros(2)).terminated
-    continued = _sawyer((0.3, 0.4), (0.0, 0.049), jnp.zeros(2), terminate=False)
-    assert continued.metrics["success"] == 1.0
-    assert not continued.terminated
-
-
-def test_push_starts_keep_their_distances():
-    env = SawyerPush("native")
-    states = jax.jit(jax.vmap(env.reset))(jax.random.split(jax.random.key(0), 500))
-    block, target = np.asarray(states.data.qpos[:, 7:9]), np.asarray(states.info["target"])
-    tip = TIP.constant_pose(HOME)[0][:2]
-    assert (np.linalg.norm(block - tip, axis=1) > 0.06).all()
-    assert (np.linalg.norm(block - env.block, axis=1) <= 0.08 + 1e-6).all()
-    assert (np.linalg.norm(block - target, axis=1) > 0.12).all()
-    assert (target >= env.target_low).all()
-    assert (target <= env.target_high).all()
-    assert (target.std(0) > [0.04, 0.08]).all()
-    np.testing.assert_allclose(states.data.qpos[:, 9], HEIGHT)
-    assert not states.terminated.any()
 
 
 def _panda(env, block, closed, fingers):
@@ -194,28 +122,11 @@ def test_other_observations_lead_the_expert_in_the_same_way(grip, observation):
 
 def test_a_random_base_is_observed():
     env = PandaStack("native", base_spread=0.03)
-    states = jax.jit(jax.vmap(env.reset))(jax.random.split(jax.random.key(0), 50))
+    states = many(env, "reset")(jax.random.split(jax.random.key(0), 50))
     goal = np.asarray(states.data.qpos[:, 16:19]) + np.array([0, 0, 0.05])
     assert states.obs.shape == (50, env.spec.obs) == (50, 16)
     np.testing.assert_allclose(states.obs[:, 13:], goal, atol=1e-6)
     assert (goal.std(0)[:2] > 0.01).all()
-
-
-@pytest.mark.parametrize("fields", [{"low": (0.0,)}, {"block": (1.0, 2.0, 3.0)}])
-@pytest.mark.parametrize("task", [SawyerPush, PandaStack])
-def test_a_wrong_size_raises(task, fields):
-    (name,) = fields
-    with pytest.raises(ValueError, match=rf"{name}=\[.*must have \w+ entries"):
-        task(**fields)
-
-
-@over_implementations("sawyer_push")
-def test_the_expert_pushes_the_block_to_the_target(implementation):
-    path = play(make("sawyer_push", implementation), EXPERTS["sawyer_push"], 100)[1]
-    assert path.metrics["success"].any(1).all()
-    height = path.data.qpos[..., 9]
-    assert jnp.abs(height - HEIGHT).max() < 2e-3  # the block neither tips nor jumps
-    assert jnp.abs(path.data.qvel).max() < 5.0
 
 
 @over_implementations("panda_stack")
@@ -226,23 +137,6 @@ def test_the_expert_stacks_the_block(implementation):
     assert (path.metrics["grasped"].sum(1) > 20).all()
     moved = path.data.qpos[..., 16:19] - jnp.array([0.45, 0.12, 0.025])[None, None]
     assert jnp.abs(moved).max() < 5e-3  # the base does not move
-
-
-@pytest.mark.parametrize(("mass", "friction"), [(0.1, 0.4), (0.2, 0.4), (0.1, 0.8)])
-def test_a_sliding_block_is_stopped_by_its_friction(mass, friction):
-    """After v^2 / (2 mu g), whatever its mass; within 10%, as it hops a little."""
-    env = SawyerPush("native", block_mass=mass, block_friction=friction)
-    model = env._body.model
-    assert model.body("cube").mass[0] == mass
-    data = mujoco.MjData(model)
-    data.qpos[:7] = HOME
-    data.qpos[7:14] = (0.6, 0.2, HEIGHT, 1, 0, 0, 0)
-    for _ in range(50):
-        mujoco.mj_step(model, data)
-    data.qvel[7], start = 0.5, data.qpos[7]
-    for _ in range(100):
-        mujoco.mj_step(model, data)
-    assert data.qpos[7] - start == pytest.approx(0.5**2 / (2 * 9.81 * friction), rel=0.1)
 
 
 def test_pads_and_cubes_take_the_mass_and_the_friction_of_the_task():
