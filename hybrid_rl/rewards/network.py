@@ -22,7 +22,15 @@ from jax import Array
 
 from hybrid_rl.core import statistics
 from hybrid_rl.fields import Count, part
-from hybrid_rl.networks import MLP, Activation, LayerNorm, Widths, ensemble_apply, ensemble_init
+from hybrid_rl.networks import (
+    MLP,
+    Activation,
+    LayerNorm,
+    Widths,
+    apply,
+    ensemble_apply,
+    ensemble_init,
+)
 from hybrid_rl.types import Params, Spec
 
 CERTAIN = 20.0  # logit of a known end: a probability of 1 - 2e-9
@@ -36,7 +44,7 @@ class RewardNetwork:
     activation: Activation = "relu"
     normalise: bool = True  # states by their running statistics
     ends: bool = False  # also where episodes end
-    rule: Any = None  # an environment whose `ended` gives the ends; without: they are learned
+    rule: object = None  # an environment whose `ended` gives the ends; without: they are learned
     layer_norm: LayerNorm = False  # of every hidden layer; or shift: without a learned scale
     scale: bool = False  # targets by their running statistics
     members: Count = 1  # networks, whose mean is used
@@ -92,7 +100,7 @@ class RewardNetwork:
         inputs = jnp.concatenate(inputs)
         net, weights = self._net(), params["weights"]
         several = self.members > 1
-        out: Any = (ensemble_apply if several else MLP.apply)(net, weights, inputs)
+        out = (ensemble_apply if several else apply)(net, weights, inputs)
         out = out.reshape(self.members, -1)
         r = out[:, 0]
         if self.scale:
