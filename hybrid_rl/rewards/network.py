@@ -22,15 +22,7 @@ from jax import Array
 
 from hybrid_rl.core import statistics
 from hybrid_rl.fields import Count, part
-from hybrid_rl.networks import (
-    MLP,
-    Activation,
-    LayerNorm,
-    Widths,
-    apply,
-    ensemble_apply,
-    ensemble_init,
-)
+from hybrid_rl.networks import MLP, Activation, LayerNorm, Widths, ensemble_apply, ensemble_init
 from hybrid_rl.types import Params, Spec
 
 CERTAIN = 20.0  # logit of a known end: a probability of 1 - 2e-9
@@ -100,7 +92,7 @@ class RewardNetwork:
         inputs = jnp.concatenate(inputs)
         net, weights = self._net(), params["weights"]
         several = self.members > 1
-        out = (ensemble_apply if several else apply)(net, weights, inputs)
+        out: Any = (ensemble_apply if several else MLP.apply)(net, weights, inputs)
         out = out.reshape(self.members, -1)
         r = out[:, 0]
         if self.scale:
