@@ -164,7 +164,7 @@ USAGE = [  # overrides of train, words of the line
     ("++planner.horizn=3", "planner.horizn: hybrid_stochastic has no such key"),
     ("total_steps", "total_steps: has no value; write total_steps=VALUE"),
     ("physics=bullet", "physics=bullet: choose one of auto, native, mjx, warp"),
-    ("task=cartpole physics=warp", "physics='warp' needs"),
+    ("task=cartpole physics=warp", "physics=warp: must have an NVIDIA GPU"),
     *((f"{key}=0", f"{key}=0: {COUNT}") for key in ("total_steps", "planner.samples")),
     ("policy_learner.batch_size=2.5", "policy_learner.batch_size=2.5: must be a whole number"),
     ("num_envs=2.5", f"num_envs=2.5: {COUNT}"),

@@ -9,7 +9,7 @@ from foreign import METRIC, ROW, made, no_plain_file, refused
 from tiny import call, only_line
 
 from hybrid_rl import figures
-from hybrid_rl.analysis import long_table
+from hybrid_rl.analysis import tables
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
 from hybrid_rl.errors import UsageError
@@ -156,9 +156,9 @@ HEAD = "exp_name,env_name,seed,metric,env_step,value\n"
 @pytest.mark.parametrize(
     ("rows", "words"),
     [
-        ("a,pendulum,0,m,1,1e308\n", "no row's metric is m"),
-        ("a,pendulum,0,m,1e400,1\n", "no row's metric is m"),
-        ("a,pendulum,0,m,nan,1\n", "no row's metric is m"),
+        ("a,pendulum,0,m,1,1e308\n", "must have rows of the metric m, env_name of pendulum"),
+        ("a,pendulum,0,m,1e400,1\n", "must have rows of the metric m, env_name of pendulum"),
+        ("a,pendulum,0,m,nan,1\n", "must have rows of the metric m, env_name of pendulum"),
         ("a,pendulum,0,m,1,nan\na,pendulum,0,m,1,2\n", ""),
         ("a,pendulum,0,m,1," + "x" * 2_000_000, "must have the columns"),
         ("a,pendulum," + "9" * 5000 + ",m,1,1\n", "must have the columns"),
@@ -180,7 +180,7 @@ def test_a_table_of_others_is_read_within_limits(tmp_path, rows, words):
     if rows == "large":
         os.truncate(file, 10**9)
     if not words:
-        assert [one.each.tolist() for one in long_table.read(file, "m", ["pendulum"])] == [[[2]]]
+        assert [one.each.tolist() for one in tables.read(file, "m", ["pendulum"])] == [[[2]]]
         return
     with pytest.raises(UsageError, match=f"^others={file}: .*{words}"):
-        long_table.read(file, "m", ["pendulum"])
+        tables.read(file, "m", ["pendulum"])

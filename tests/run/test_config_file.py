@@ -163,7 +163,7 @@ def test_a_setting_is_named_by_its_last_names(trained):
     ):
         with pytest.raises(config.UsageError, match=f"group={key}: .*{words}"):
             settings.word(key)
-    with pytest.raises(config.UsageError, match=r"x=batch_sise: must be .*batch_size"):
+    with pytest.raises(config.UsageError, match=r"x=batch_sise: not in .*batch_size"):
         settings.number("batch_sise")
 
 
