@@ -109,7 +109,7 @@ def test_a_planner_of_the_users_is_checked_before_it_acts(known, tmp_path, monke
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(tmp_path)
     (tmp_path / "controller").mkdir()
-    gives = r"Push\.act: returned the action float32\[2\]; it must be float32\[1\] in"
+    gives = r"Push\.act: returned action float32\[2\]; it must be float32\[1\]"
     for name, more, words in (
         ("push", "", "Push has no greedy; write def greedy"),
         ("push_on", "    def greedy(self): return self\n", gives),

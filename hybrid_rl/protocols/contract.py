@@ -278,8 +278,9 @@ def of_user(part: object) -> bool:
 
 
 def has_users(part: object) -> bool:
-    """Whether a part, or one in it, is of the user's code."""
-    return any(map(of_user, [part, *(inner for _, _, _, inner in parts(part))]))
+    """True if a part, or one in it, is of the user's code; or one of several parts in a list."""
+    several = part if isinstance(part, list) else [part]
+    return any(map(of_user, [*several, *(inner for _, _, _, inner in parts(part))]))
 
 
 def check_indices(source: SourceOf, method: str, *examples: tuple[Any, ...]) -> None:

@@ -113,7 +113,7 @@ def aimed(
     if not overrides:
         return trained, None
     config: Any = OmegaConf.to_container(trained.config, resolve=True)
-    named = [text.partition("=")[0] for text in overrides]
+    named = {text.partition("=")[0]: text for text in overrides}
     if "controllers" in config and all(key.startswith("planner.") for key in named):
         return _adjusted(trained, OmegaConf.create(config), overrides), None
     composed = raw_values(_composed(overrides, config_dir))
@@ -123,7 +123,7 @@ def aimed(
         group = key.partition(".")[0]
         goal = (*configuration.PAID, "imagine") if group == "planner" else ()  # they bring one
         if not {group, *goal} & {*named}:
-            raise UsageError(f"{key}: is a key of {group}=NAME; give that with it")
+            raise UsageError(f"{named[key]}: is a key of {group}=NAME; give that with it")
         if select(raw, key) is LACKING:
             raise UsageError(refusal(key, [{**raw, "algo": config.get("algo")}]))
     goal = _fitting(config, OmegaConf.create({key: raw[key] for key in composed}))
