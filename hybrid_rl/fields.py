@@ -22,6 +22,7 @@ from typing import (
     Literal,
     NoReturn,
     Self,
+    SupportsIndex,
     TypeVar,
     Union,
     dataclass_transform,
@@ -81,7 +82,7 @@ NO_PART = bool | int | float | str | list | tuple | Mapping
 
 
 def _whole(value: Any) -> bool:
-    return hasattr(value, "__index__") and not isinstance(value, bool)
+    return isinstance(value, SupportsIndex) and not isinstance(value, bool)
 
 
 def _listed(value: Any) -> bool:

@@ -47,11 +47,11 @@ class Clock(NamedTuple):
 
     decision: Array  # [] int32
     total: Array  # [] the return: rewards without discount, and without a constraint's price
-    violations: Any = None  # [] of the constraint
-    late: Any = None  # [delay, m] actions that are to arrive
-    true_obs: Any = None  # [o] the observation before noise
-    sensing: Any = None  # data of the key of the next noise of the sensors
-    disturbing: Any = None  # data of the key of the next noise of an action
+    violations: Array | None = None  # [] of the constraint
+    late: Array | None = None  # [delay, m] actions that are to arrive
+    true_obs: Array | None = None  # [o] the observation before noise
+    sensing: Array | None = None  # data of the key of the next noise of the sensors
+    disturbing: Array | None = None  # data of the key of the next noise of an action
 
 
 def _no() -> Array:

@@ -65,7 +65,7 @@ USAGE = [  # overrides of train, words of the line
     ("experiment=thesis/fig_33", "`python -m hybrid_rl.list`; nearest: thesis/fig_3_3; "),
     ("task=gymnasium algo=mppi", "Pendulum-v1: mppi plans on the true dynamics, and this task st"),
     ("task=Hopper-v5", "walker2d; did you mean task=gymnasium env.id=Hopper-v5?"),
-    ("task=gymnasium env.id=lab/A-v0", "lab? One that a module of yours registers is env.id=MOD"),
+    ("task=gymnasium env.id=lab/A-v0", "Have you installed the proper package for lab?"),
     ("task=mine:Env", "walker2d; did you mean task=gymnasium env.make=mine:Env?"),
     (
         "task=gymnasium env.id=Hopper-v5 env.make=mine:Env",

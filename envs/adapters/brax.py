@@ -24,7 +24,7 @@ from brax.envs import base
 from jax import Array
 
 from hybrid_rl.protocols import Env
-from hybrid_rl.types import EnvState
+from hybrid_rl.types import EnvState, PyTree
 
 
 class BraxEnv(base.Env):
@@ -41,8 +41,8 @@ class BraxEnv(base.Env):
         """
         if jnp.issubdtype(rng.dtype, jax.dtypes.prng_key):
             raise TypeError("Brax takes keys of jax.random.PRNGKey, not of jax.random.key")
-        first: Any = self.env.reset(rng)
-        pipeline_state: Any = (first.data, first.info)
+        first = self.env.reset(rng)
+        pipeline_state: PyTree = first.data, first.info
         done = jnp.float32(0.0)
         return base.State(pipeline_state, first.obs, first.reward, done, dict(first.metrics), {})
 

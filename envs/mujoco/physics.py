@@ -69,11 +69,10 @@ class PhysicsState:
 
     def __getattr__(self, name: str) -> Any:
         """No field of MjData but these is kept: say how such a one is read."""
-        line = f"a state of the physics keeps no {name}"
-        if hasattr(mujoco.MjData, name):
-            line += f': a sensor measures it, or Physics(..., reads=("{name}",)) keeps it for '
-            line += f'physics.read(data, "{name}")'
-        raise AttributeError(line)
+        raise AttributeError(
+            f"a state of the physics keeps no {name}: a sensor measures it, or Physics(..., "
+            f'reads=("{name}",)) keeps it for physics.read(data, "{name}")'
+        )
 
 
 def resolve(implementation: str, worlds: int | None = None) -> str:

@@ -106,7 +106,8 @@ class EmbeddingLearner:
 
         The loss is the squared error, before the fit, of these decisions' predictions.
         """
-        before: Any = params.decisions
+        before = params.decisions
+        assert before is not None  # in training
         total = before + len(batch.reward)
         ended = jnp.maximum(batch.terminated, batch.truncated)
         new = Decisions(batch.obs, batch.action, ended, batch.next_obs)

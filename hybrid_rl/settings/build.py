@@ -20,7 +20,6 @@ from hybrid_rl.errors import PartError, UsageError
 from hybrid_rl.fields import FieldError
 from hybrid_rl.files.targets import build as build_part
 from hybrid_rl.protocols import Controller
-from hybrid_rl.protocols.contract import of_user
 from hybrid_rl.settings import values as checks
 from hybrid_rl.settings import words as overriding
 from hybrid_rl.settings.complete import LACKING, complete, refusal, select
@@ -218,8 +217,6 @@ def _episode(parts: DictConfig) -> tuple[Episode, tuple[str, ...]]:
     """The episodes of the sections `env` and `episode`, and notes about a world of the user's."""
     env = _instantiate(parts.env, "env")
     notes = check_world(env)
-    if of_user(env) and "steps" not in parts.episode:
-        notes += (f"episode.steps is not set by the task: {Episode.steps:,} decisions an episode",)
     check_fields(parts.episode, Episode, "episode.")
     given = _instantiate(parts.episode, "episode")
     given |= {name: _instantiate(parts.get(name) or None, name) for name in PAID}

@@ -12,7 +12,7 @@ from jax import Array
 from hybrid_rl.core.batching import repeat
 from hybrid_rl.protocols import Controller
 from hybrid_rl.training.given import check_finite
-from hybrid_rl.types import Params, Spec
+from hybrid_rl.types import Params, PyTree, Spec
 
 
 class TrainedPolicy:
@@ -35,7 +35,7 @@ class TrainedPolicy:
     ) -> None:
         self.spec, self._key, self._span, self._flat = spec, jax.random.key(key), span, flat
         self._begin = partial(controller.init, spec)
-        self._state: Any = None  # [N, ...]; None: an episode begins
+        self._state: PyTree = None  # [N, ...]; None: an episode begins
         self._worlds = 0  # N
 
         def act(state: Any, obs: Array, key: Array) -> tuple[Array, Any, Array]:

@@ -31,7 +31,7 @@ LEARNED = {"model", "reward", "policy", "critic"}  # fields of Params with parts
 
 def needs_world(controller: Any) -> bool:
     """Whether a controller plans from the state of the world, where a model in it starts."""
-    return any(callable(getattr(part, "start", None)) for *_, part in parts(controller))
+    return any(lifting.is_world(part) for *_, part in parts(controller))
 
 
 def check_members(agent: Any) -> None:

@@ -32,7 +32,7 @@ from hybrid_rl.training.host_loop import outcome_like, states
 from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Loop, put
 from hybrid_rl.training.metrics import outcome
 from hybrid_rl.training.robot_process import RobotProcess
-from hybrid_rl.types import Transition
+from hybrid_rl.types import PyTree, Transition
 
 RESUMED = "the robot went on, or begins a new episode: its rows so far are read first, and the "
 RESUMED += "decisions after them differ from those of a run without the interruption"
@@ -48,7 +48,7 @@ class RobotLoop(Loop):
     notes = (RESUMED,)
     folder: Path = field(default_factory=Path)
     cut: bool = False  # whether a call ends early
-    rows: Any = field(default=None, init=False)  # shapes [stride, S, ...] of the metrics of a call
+    rows: PyTree = field(default=None, init=False)  # shapes [stride, S, ...] of a call's metrics
 
     def __post_init__(self) -> None:
         check_one(self.agent, self.seeds)
@@ -164,7 +164,7 @@ class RobotProgram:
         loop has the `fault`.
         """
         first, count, done, began = int(start), int(rounds), 0, time.monotonic()
-        rows: Any = self.loop.empty()
+        rows = self.loop.empty()
         read = self._known(state, first) if self.read is None else self.read
         host, updates, until = [], 0, 0.0
         while done < count and not self.loop.cut:

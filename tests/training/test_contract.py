@@ -287,16 +287,16 @@ def test_parts_of_the_library_keep_the_contract_too(algo, monkeypatch):
 
 @dataclass(frozen=True)
 class Near:
-    """Less the distance to the nearest of several places."""
+    """Less the distance to the nearest of several marks."""
 
     def reward_of(self, x, u, after):
-        places = jnp.eye(3)
-        return -jnp.square(places - x).sum(1).min()
+        marks = jnp.eye(3)
+        return -jnp.square(marks - x).sum(1).min()
 
 
 @dataclass(frozen=True)
 class Beyond(Near):
-    """Reads a place that is not there."""
+    """Reads an entry that is not there."""
 
     def reward_of(self, x, u, after):
         return x[3]
