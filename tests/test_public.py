@@ -27,8 +27,8 @@ PRIVATE = {  # tool -> what it imports that is not public: take names away, add 
         settings.groups
     """,
     "demo": """
-        analysis.drawing.SUFFIXES envs.mujoco.offscreen errors.install render.draw_film
-        render.episode run.saved.names run.saved.read settings.groups.options
+        analysis.drawing.SUFFIXES analysis.film.draw_film analysis.film.episode
+        envs.mujoco.offscreen errors.install run.saved.names run.saved.read settings.groups.options
     """,
     "doctor": """
         analysis.held_out.RandomActions analysis.results.RunFolder
@@ -42,7 +42,8 @@ PRIVATE = {  # tool -> what it imports that is not public: take names away, add 
         analysis.curves.area analysis.curves.format_number analysis.curves.plural
         analysis.curves.spread analysis.curves_picture.plot analysis.results.NOT_METRICS
         analysis.results.RunFolder analysis.results.differences analysis.results.find
-        envs.mujoco.offscreen envs.mujoco.scenery render run.files.integrity.write_text
+        analysis.film.draw_film analysis.film.episode envs.mujoco.offscreen
+        run.files.integrity.write_text
         run.files.reading.json_file run.files.reading.text run.logs.progress.clock
     """,
     "stand_in": """

@@ -45,7 +45,7 @@ from hybrid_rl.protocols.contract import has_users
 from hybrid_rl.run.saved import Trained, load_named
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings.complete import LACKING, complete, refusal, select
-from hybrid_rl.settings.compose import check_choices, explain
+from hybrid_rl.settings.compose import explain
 from hybrid_rl.settings.groups import CONF, search_path
 from hybrid_rl.settings.words import forced, raw_values, value_of
 from hybrid_rl.training.agent import Agent
@@ -163,7 +163,7 @@ def _adjusted(trained: Trained, overrides: Sequence[str]) -> Trained:
     try:
         episode, controllers, _ = configuration.acting(config)
     except UsageError as error:
-        raise UsageError(str(error).replace("controllers.full.", "planner.", 1)) from error
+        raise UsageError(str(error).replace("controllers.full", "planner", 1)) from error
     return replace(trained, controllers=_greedy(trained, episode, controllers), config=config)
 
 
@@ -241,13 +241,10 @@ def _composed(overrides: Sequence[str], config_dir: str | Path | None) -> DictCo
     if config_dir:
         words.append(search_path(config_dir))
     try:
-        check_choices(words)
         with configuration.COMPOSING, initialize_config_dir(str(CONF), version_base="1.3"):
             found: Any = compose("retarget", forced(words, {*GROUPS, "controller"}))
     except (HydraException, OmegaConfBaseException) as error:
         raise UsageError(_as_given(explain(error))) from error
-    except UsageError as error:
-        raise UsageError(_as_given(str(error))) from error
     return OmegaConf.create({**dict.fromkeys(configuration.PAID), **found})
 
 

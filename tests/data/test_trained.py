@@ -179,7 +179,7 @@ def test_the_policy_of_a_run_becomes_the_expert_of_its_task(
     np.testing.assert_allclose(again.policy()(x), want, atol=1e-6)
     capfd.readouterr()
     for words, wrong in (
-        ("give run=DIR", ["task=pendulum", "policy=policy.npz"]),
+        ("from run=DIR", ["task=pendulum", "policy=policy.npz"]),
         ("must end in .npz", [write[0], "policy=policy.txt"]),
         ("a run has its own", [*write, "env.x=1"]),
     ):

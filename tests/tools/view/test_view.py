@@ -192,9 +192,9 @@ def test_plots_leave_out_what_does_not_apply():
     [
         ("", "run, policy, task: give one of them"),
         ("policy=ant task=pendulum", "give one of them"),
-        ("task=panda_stack reward=speed", "a scripted expert has none"),
-        ("task=panda_stack mode=policy", "mode: a scripted expert has none"),
-        ("policy=ant expert=babble", "expert: is of a task"),
+        ("task=panda_stack reward=speed", "reward: is not for panda_stack; give it with run=DIR"),
+        ("task=panda_stack mode=policy", "mode: is not for panda_stack"),
+        ("policy=ant expert=babble", "expert: is not for ant"),
         ("policy=ant host=192.0.2.1", "host=192.0.2.1 port=8080: cannot be used"),
         ("policy=ant port=70000", "port=70000: must be a whole number, 1 to 65535"),
         ("policy=ant port=0", "port=0: must be a whole number, 1 or more"),
