@@ -1,5 +1,6 @@
 """Values of a configuration that no part checks itself: counts, choices, types of fields."""
 
+import math
 from collections.abc import Collection, Mapping
 from dataclasses import fields, is_dataclass
 from numbers import Integral
@@ -173,9 +174,9 @@ def _kinds(node: DictConfig, where: str) -> dict[str, set[type]]:
 def whole(key: str, value: Any, least: int = 1, most: int | None = None) -> int:
     """The value at `key`, a whole number, which may be one of NumPy's."""
     number = isinstance(value, Integral) and not isinstance(value, bool)
-    if not number or value < least or (most is not None and value > most):
-        range_ = f"{least} or more" if most is None else f"from {least} to {most}"
-        raise UsageError(f"{key}={as_yaml(value)}: must be a whole number, {range_}")
+    if not number or not least <= int(value) <= (math.inf if most is None else most):
+        limits = f"{least} or more" if most is None else f"from {least} to {most}"
+        raise UsageError(f"{key}={as_yaml(value)}: must be a whole number, {limits}")
     return int(value)
 
 
