@@ -245,7 +245,7 @@ def test_a_return_that_is_not_finite_is_one_line_and_no_file(
         ("reward=level", "reward.world=Cartpole: has no pitch, only position, speed, height"),
         ("planner=gradient planner.tail=-1", "planner.tail=-1: must be a whole number, 0 or more"),
         ("planner=fast", "hybrid_rl: planner=fast: unknown; choose one of adjoint"),
-        ("planner=3", "hybrid_rl: planner=3: choose one of adjoint"),
+        ("planner=3", "hybrid_rl: planner=3: unknown; choose one of adjoint"),
         ("imagine=dreams", "imagine=dreams: unknown; choose one of policy"),
         ("imagine=policy imagine.updates=0", "imagine.updates=0: must be a whole number, 1"),
     ],

@@ -141,7 +141,8 @@ def countable(config: DictConfig) -> None:
 def check_kinds(node: DictConfig, where: str = "") -> None:
     """Raise UsageError for a value in `node` that the field of its part cannot hold."""
     kinds = _kinds(node, where)
-    for key, value in node.items():
+    last = ("controllers", "learners")  # what they refer to has a shorter key
+    for key, value in sorted(node.items(), key=lambda item: item[0] in last):
         values = value if isinstance(value, ListConfig) else [value]
         if any(isinstance(item, float) and not abs(item) <= FINITE for item in values):
             raise UsageError(f"{where}{key}={value}: must be finite")
