@@ -171,7 +171,7 @@ def _greedy(
     trained: Trained, episode: Episode, controllers: Mapping[str, Controller]
 ) -> dict[str, Controller]:
     """The controllers without exploration."""
-    if any(map(has_users, controllers.values())):
+    if has_users([*controllers.values()]):
         agent = Agent(episode, next(iter(controllers.values())), {}, Replay())
         one: Any = jax.tree.map(lambda leaf: leaf[0], trained.params)
         check_acting(agent, controllers.values(), one)
