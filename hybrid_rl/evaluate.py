@@ -55,7 +55,7 @@ from hybrid_rl.cli.arguments import (
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.errors import UsageError
 from hybrid_rl.networks import precision
-from hybrid_rl.run.evaluated import check, evaluate, report
+from hybrid_rl.run.evaluated import evaluate, report
 from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.folder import members
 from hybrid_rl.run.logs.progress import say
@@ -93,7 +93,7 @@ def _evaluate(given: dict[str, Any], changes: dict[str, str]) -> None:
         precision.choose(given["precision"])
         changes |= {"precision": now} if (now := precision.current()) != own else {}
     print(*(f"{note}\n" for note in trained.notes), sep="", end="")
-    check(trained, mode, episodes)  # before anything is compiled
+    trained.learner(mode=mode, world=True)  # before anything is compiled
     each = f"{plural(episodes, 'episode')} a seed"
     say(f"compiling, then {each} ...")  # of a planner, a minute
     got = evaluate(trained, mode, episodes, _progress(trained.episode.steps))

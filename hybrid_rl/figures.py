@@ -20,7 +20,8 @@ import inspect
 import sys
 from dataclasses import replace
 
-from hybrid_rl.analysis.studies import arguments, redrawn, save, studies, study_of, styled
+from hybrid_rl.analysis.results import redrawn
+from hybrid_rl.analysis.studies import arguments, save, studies, study_of, styled
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import HELP, Argument, output, read
 from hybrid_rl.run.files.integrity import write_text
@@ -60,7 +61,9 @@ def main() -> None:
     if again and any(text.startswith("from=") for text in line):
         values, _ = read(doc, (*of_all, FROM))
         out = output("out", values["out"], SUFFIXES, ".json")
-        save(*redrawn(study, values["from"]), out)
+        with styled():
+            picture, numbers = redrawn(values["from"], "from", study.draw)
+        save(picture, numbers, out)
         print(out)
         return
     values, _ = read(doc, (*of_all, *(FROM,) * again, *arguments(study)))

@@ -139,9 +139,9 @@ def _draw(world: "Episode", shown: "Film", given: dict[str, Any], out: Path, by:
 
 def _draw_training(given: dict[str, Any], out: Path) -> None:
     """Draw the first episode of training, with the belief at the right."""
-    from hybrid_rl.analysis.belief import video
     from hybrid_rl.analysis.drawing import draw
     from hybrid_rl.envs.mujoco.scenery import check_drawable, scene_of
+    from hybrid_rl.thesis.studies import belief_video as video
 
     folder, seed, steps = Path(given["run"]), given["seed"], given["episode_steps"]
     shown = video.film(folder, seed, steps, given["height"], video.MOST[out.suffix])

@@ -20,6 +20,7 @@ from collections.abc import Callable
 from dataclasses import field
 from typing import Any, NamedTuple
 
+import jax.numpy as jnp
 from flax import struct
 from jax import Array
 
@@ -53,6 +54,10 @@ class Clock(NamedTuple):
     disturbing: Any = None  # data of the key of the next noise of an action
 
 
+def _no() -> Array:
+    return jnp.zeros((), bool)
+
+
 @struct.dataclass
 class EnvState:
     """The state of an environment between two decisions (a superset of Brax's fields)."""
@@ -60,8 +65,8 @@ class EnvState:
     data: PyTree  # the physical state
     obs: Array  # [o]
     reward: Array  # []
-    terminated: Array  # [] bool: the task ended, no reward follows
-    truncated: Array  # [] bool: only the time limit ended the episode
+    terminated: Array = field(default_factory=_no)  # [] bool: the task ended, no reward follows
+    truncated: Array = field(default_factory=_no)  # [] bool: only the time limit ended the episode
     metrics: dict[str, Array] = field(default_factory=dict)  # name -> [], logged; or success
     info: dict[str, Array] = field(default_factory=dict)  # the task's own memory
     clock: Any = None  # the Clock of the episode; None: of a world alone

@@ -49,10 +49,8 @@ class BraxEnv(base.Env):
     def step(self, state: Any, action: Array) -> base.State:
         """The state after one decision."""
         data, info = state.pipeline_state
-        no = jnp.zeros((), bool)
-        before = EnvState(
-            data, state.obs, state.reward, state.done.astype(bool), no, state.metrics, info
-        )
+        ended, metrics = state.done.astype(bool), state.metrics
+        before = EnvState(data, state.obs, state.reward, ended, metrics=metrics, info=info)
         after = self.env.step(before, action)
         return state.replace(
             pipeline_state=(after.data, after.info),

@@ -14,8 +14,7 @@ from hybrid_rl.cli.arguments import Argument
 from hybrid_rl.errors import UsageError
 from hybrid_rl.files.atomic import replacing
 from hybrid_rl.run.files.integrity import write_text
-from hybrid_rl.run.files.reading import json_file
-from hybrid_rl.run.logs.records import arrays, json_value
+from hybrid_rl.run.logs.records import json_value
 from hybrid_rl.settings.complete import nearest
 
 if TYPE_CHECKING:
@@ -126,14 +125,3 @@ def _content(file: Path) -> Any:
         return json.loads(file.read_text(encoding="utf-8"))
     except (ValueError, RecursionError):
         return None
-
-
-def redrawn(study: Study, file: str) -> tuple["Figure", dict[str, Any]]:
-    """The picture of a JSON, and its content."""
-    try:
-        content = json_file(Path(file))
-        with styled():
-            return study.draw(arrays(content)), content
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
-        line = error if isinstance(error, UsageError) else f"{file}: has no numbers of this study"
-        raise UsageError(f"from={line}") from error

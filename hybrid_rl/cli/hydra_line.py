@@ -14,7 +14,7 @@ from omegaconf import DictConfig, OmegaConf, open_dict
 
 from hybrid_rl.cli import arguments, command
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run import inherited
+from hybrid_rl.run import start
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings import words as overrides
 from hybrid_rl.settings.groups import CONF, groups, search_path
@@ -64,7 +64,7 @@ def hydra_main(job: Callable[..., Any]) -> None:
 
     def composed() -> None:
         options, words, folders = _sorted(sys.argv[1:])
-        words = inherited.add_recipe(words, *folders)
+        words = start.add_recipe(words, *folders)
         if {"--cfg=job", "-c=job"} & {*options}:
             print(OmegaConf.to_yaml(configuration.compose_raw(words, *folders)), end="")
             return

@@ -11,7 +11,6 @@ import numpy as np
 
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.run.evaluations import finish_episodes
-from hybrid_rl.run.machine import memory
 from hybrid_rl.run.saved import Trained
 from hybrid_rl.training.host_loop import HostEvaluator
 from hybrid_rl.training.rollout import advance, begin, evaluation_keys
@@ -30,10 +29,9 @@ def evaluate(
     of decisions that every episode has made.
 
     Raises:
-        UsageError: for a mode that the method does not have, or episodes that do not fit.
+        UsageError: for a mode that the method does not have.
     """
-    check(trained, mode, episodes)
-    episode, controller = trained.episode, trained.controllers[mode]
+    episode, (controller, _) = trained.episode, trained.learner(mode=mode, world=True)
     keys = jnp.stack([evaluation_keys(seed, episodes) for seed in trained.seeds])
     if isinstance(episode.env, External):
         decisions = count()
@@ -45,12 +43,6 @@ def evaluate(
     more = jax.vmap(partial(advance, episode, controller), (0, 0, None))
     more = partial(jax.jit(more, donate_argnums=1), trained.params)
     return finish_episodes(first(keys), more, episode.steps, on_decisions) or {}
-
-
-def check(trained: Trained, mode: str, episodes: int) -> None:
-    """Raise UsageError as `evaluate`, before anything is compiled."""
-    controller, _ = trained.learner(mode=mode, world=True)
-    memory.episodes("episodes", episodes, len(trained.seeds), trained.episode, [controller])
 
 
 def report(trained: Trained, mode: str, got: dict[str, np.ndarray]) -> dict[str, Any]:

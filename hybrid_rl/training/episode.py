@@ -67,7 +67,7 @@ class Episode:
             raise error.at("episode") from error
         for part, protocol in ((self.reward, Goal), (self.constraint, Constraint)):
             if part is not None:
-                Contract(part, protocol, {"spec": self.env.spec}).check().tried()
+                Contract(part, protocol, self.env.spec).check_examples()
         object.__setattr__(self, "randomise", self._ranges(self.randomise))
         if isinstance(self.sensor_noise, list):  # so that episodes can be hashed
             object.__setattr__(self, "sensor_noise", self.std)

@@ -157,9 +157,9 @@ def test_a_task_is_a_plain_name(tmp_path, policy, task):
 ABOUT: dict[str, tuple[dict[str, Any], str]] = {
     "a function": ({"env": json.loads(EVIL)}, "is no part of hybrid_rl"),
     "in a list": ({"policy": {"_target_": "a.B", "x": [[json.loads(EVIL)]]}}, "is no part of"),
-    "no group": ({"env": [1]}, "env of its description is of a wrong kind"),
-    "no number": ({"seed": []}, "seed of its description is of a wrong kind"),
-    "no steps": ({"step": "1e400"}, "step of its description is of a wrong kind"),
+    "no group": ({"env": [1]}, "its description lacks env, or is damaged"),
+    "no number": ({"seed": []}, "its description lacks seed, or is damaged"),
+    "no steps": ({"step": "1e400"}, "its description lacks step, or is damaged"),
     "no world": ({"env": {"_target_": "hybrid_rl.core.domain.Box"}}, "a.npz: "),
     "other fields": ({"episode": {"action_repeat": "x"}}, "a.npz: "),
     "no episode": ({"episode": {"_target_": "hybrid_rl.training.episode.Episode"}}, "a.npz: "),

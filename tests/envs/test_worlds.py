@@ -184,5 +184,5 @@ def test_unknown_reward_is_named(task):
 
 @pytest.mark.parametrize("task", ["halfcheetah", "hopper", "walker2d", "cartpole"])
 def test_warp_without_a_gpu_raises(task):
-    with pytest.raises(ValueError, match=r"physics='warp' needs"):
+    with pytest.raises(ValueError, match=r"physics=warp: must have an NVIDIA GPU"):
         make(task, "warp")

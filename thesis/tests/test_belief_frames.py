@@ -12,14 +12,12 @@ from matplotlib.figure import Figure
 from tiny import call, only_line
 
 from hybrid_rl import figures, render
-from hybrid_rl.analysis.belief import frames as belief_frames
-from hybrid_rl.analysis.belief import video as belief_video
-from hybrid_rl.analysis.belief.panel import Panel, View, level
-from hybrid_rl.analysis.recorded import read
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.contact_plane import THREE
 from hybrid_rl.run.saved import restore
-from hybrid_rl.thesis.studies import contacts
+from hybrid_rl.thesis.studies import belief_frames, belief_video, contacts
+from hybrid_rl.thesis.studies.belief_panel import Panel, View, level
+from hybrid_rl.thesis.studies.recorded import read
 
 pytestmark = pytest.mark.xdist_group("contact_runs")  # their fixture is expensive
 

@@ -9,7 +9,7 @@ import pytest
 from tiny import call
 
 from hybrid_rl import figures, train
-from hybrid_rl.analysis import drawing, recorded
+from hybrid_rl.analysis import drawing
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.quadcopter_se3 import DT
@@ -21,6 +21,7 @@ from hybrid_rl.thesis.studies import (
     falls,
     falls_picture,
     koopman,
+    recorded,
     tracking,
 )
 from hybrid_rl.thesis.studies.falls import Fall

@@ -13,10 +13,10 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.analysis.belief.panel import HALF, View, level
-from hybrid_rl.analysis.recorded import Recorded
 from hybrid_rl.core import ergodic, poses, resampling
 from hybrid_rl.errors import UsageError
+from hybrid_rl.thesis.studies.belief_panel import HALF, View, level
+from hybrid_rl.thesis.studies.recorded import Recorded
 from hybrid_rl.types import Params
 
 GRID = 64  # cells a side

@@ -6,13 +6,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hybrid_rl.analysis.belief.frames import Drawn, beliefs, scenes, trial_of, truth
-from hybrid_rl.analysis.belief.panel import Panel, View
-from hybrid_rl.analysis.recorded import read
 from hybrid_rl.analysis.style import STYLE, legend_below
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.logs.progress import Progress
 from hybrid_rl.run.machine.jax_settings import prepare
+from hybrid_rl.thesis.studies.belief_frames import Drawn, beliefs, scenes, trial_of, truth
+from hybrid_rl.thesis.studies.belief_panel import Panel, View
+from hybrid_rl.thesis.studies.recorded import read
 
 LENGTH = 13.5  # [s] of a video of an episode, at most about
 MOST = {".mp4": 200, ".gif": 100, ".png": 1}  # pictures of an episode

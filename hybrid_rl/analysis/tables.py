@@ -1,4 +1,4 @@
-"""Learning curves as a long table, one value of one seed in a row.
+"""Curves and rows of runs as tables. A long table has a row for each value of a seed.
 
     exp_name,env_name,seed,metric,env_step,value
 
@@ -10,15 +10,18 @@ exp_name is the label of the curve, env_name the task, env_step the number of de
 import csv
 import io
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from hybrid_rl.analysis.curves import Curve, curve_of
 from hybrid_rl.analysis.logged import Learner
+from hybrid_rl.analysis.results import RunFolder, find
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.files.reading import text as text_of
+from hybrid_rl.run.folder import members
 
 COLUMNS = ("exp_name", "env_name", "seed", "metric", "env_step", "value")
 NAMES = {"eval/return": "avg_return"}
@@ -27,8 +30,7 @@ FLOAT32 = float(np.finfo(np.float32).max)  # greatest number that is drawn
 
 def text(drawn: Sequence[Curve], x: str) -> str:
     """The text of the table; a missing value has no row."""
-    if x != "step":
-        raise UsageError(f"x={x}: a table is over decisions; give x=step, or a picture as out")
+    _check_over_decisions(x)
     out = io.StringIO()
     rows = csv.writer(out, lineterminator="\n")
     rows.writerow(COLUMNS)
@@ -41,11 +43,14 @@ def text(drawn: Sequence[Curve], x: str) -> str:
     return out.getvalue()
 
 
-def read(file: str | Path, metric: str, tasks: Iterable[str], smooth: float = 0.0) -> list[Curve]:
+def read(
+    file: str | Path, metric: str, tasks: Collection[str], x: str = "step", smooth: float = 0.0
+) -> list[Curve]:
     """The curves of `metric` in a table with these columns, labelled by exp_name and its file.
 
-    tasks: of the runs that they are drawn beside.
+    tasks: of the runs that they are drawn beside, over x.
     """
+    _check_over_decisions(x)
     found: dict = defaultdict(lambda: defaultdict(list))
     try:
         rows = csv.DictReader(io.StringIO(text_of(Path(file)).removeprefix("\ufeff")))
@@ -58,15 +63,42 @@ def read(file: str | Path, metric: str, tasks: Iterable[str], smooth: float = 0.
         raise UsageError(f"others={error}") from error
     except (KeyError, ValueError, TypeError, csv.Error) as error:
         raise UsageError(f"others={file}: must have the columns {', '.join(COLUMNS)}") from error
-    if not found:
-        raise UsageError(f"others={file}: no row's metric is {NAMES.get(metric, metric)}")
-    if strange := sorted({task for task, _ in found} - set(tasks)):
-        has = ", ".join(sorted(set(tasks)))
-        raise UsageError(f"others={file}: env_name {strange[0]} is no task of the runs, {has}")
-    members = {
-        (task, f"{name} ({Path(file).name})"): [
-            Learner(Path(file), seed, *np.array(sorted(points)).T) for seed, points in each.items()
-        ]
+    if not found or {task for task, _ in found} - set(tasks):
+        wanted = f"the metric {NAMES.get(metric, metric)}, env_name of {', '.join(sorted(tasks))}"
+        raise UsageError(f"others={file}: must have rows of {wanted}, and of no other task")
+    return [
+        curve_of(
+            (task, f"{name} ({Path(file).name})"),
+            metric,
+            [Learner(Path(file), seed, *np.array(sorted(p)).T) for seed, p in each.items()],
+            smooth,
+        )
         for (task, name), each in found.items()
-    }
-    return [curve_of(key, metric, learners, smooth) for key, learners in members.items()]
+    ]
+
+
+def metrics(runs: str | Path | Iterable[str | Path]) -> Any:
+    """A pandas.DataFrame of all rows of runs: run, step, seed, wall_s, and a column per metric.
+
+        table = metrics("runs/hopper/sac/TIME")
+        table.dropna(subset="eval/return").pivot(index="step", columns="seed", values="eval/return")
+
+    A row has NaN in what it did not log. runs: folders, or a pattern as of `figures`. Of a sweep in
+    one program there is also a column for each of its keys, such as policy_learner.discount.
+
+    Raises:
+        UsageError: if there is no run, or a damaged one.
+        ImportError: without pandas.
+    """
+    import pandas  # pyright: ignore[reportMissingImports]: an extra
+
+    table = []
+    for path in find(runs):
+        swept = members(path.parent).get(path, {})  # what sets it apart in its sweep
+        table += [{"run": str(path), **swept, **row} for row in RunFolder(path).rows]
+    return pandas.DataFrame(table)
+
+
+def _check_over_decisions(x: str) -> None:
+    if x != "step":
+        raise UsageError(f"x={x}: tables are over decisions, x=step")
