@@ -84,10 +84,6 @@ def test_a_failed_job_does_not_end_the_others(tmp_path, capfd):
         ("seed=range(0,0)", "seed=range(0,0): has no values"),
         ("seed=glob(*)", "seed=glob(*): has no values"),
         ("seed=interval(0,1)", "seed=interval(0,1): a range needs hydra/sweeper=tuned; list val"),
-        (
-            "algo=sac policy_learner.tau=0.1 sweep.policy_learner.tau=[0.2,0.3]",
-            "policy_learner.tau=0.1: sweep.policy_learner.tau gives its values; leave one out",
-        ),
     ],
 )
 @pytest.mark.parametrize("launcher", ["basic", "submitit_local"])
