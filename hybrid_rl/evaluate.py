@@ -60,6 +60,7 @@ from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.errors import UsageError
 from hybrid_rl.networks import precision
 from hybrid_rl.networks.precision import PRECISIONS
+from hybrid_rl.outside.host_loop import HostEvaluator
 from hybrid_rl.run.evaluations import finish_episodes
 from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.folder import members
@@ -67,7 +68,6 @@ from hybrid_rl.run.logs.progress import say
 from hybrid_rl.run.machine import memory
 from hybrid_rl.run.retarget import load_changed
 from hybrid_rl.run.saved import Trained
-from hybrid_rl.training.host_loop import HostEvaluator
 from hybrid_rl.training.rollout import advance, begin, evaluation_keys
 
 SILENCE = 10  # [s] between two lines of progress

@@ -157,8 +157,8 @@ def _outside(trained: Any, given: dict[str, Any], out: Path) -> None:
 
     from hybrid_rl.analysis.drawing import write
     from hybrid_rl.envs.mujoco import offscreen
-    from hybrid_rl.training.acting import TrainedPolicy
-    from hybrid_rl.training.host_loop import seed_of
+    from hybrid_rl.outside.acting import TrainedPolicy
+    from hybrid_rl.outside.host_loop import seed_of
     from hybrid_rl.training.rollout import evaluation_keys
 
     if given["at"] or (given["width"], given["height"]) != (640, 480):

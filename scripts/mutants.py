@@ -113,7 +113,7 @@ MUTANTS = {
         "tests/training/test_imagined.py",
     ),
     "an evaluation in Gymnasium is paid beyond the end": Mutant(
-        "hybrid_rl/training/host_loop.py",
+        "hybrid_rl/outside/host_loop.py",
         "np.where(done, 0, got.reward)",
         "got.reward",
         "tests/training/test_host_loop.py",
@@ -125,7 +125,7 @@ MUTANTS = {
         "tests/training/test_host_loop.py",
     ),
     "a broken-off episode leaves its plan": Mutant(
-        "hybrid_rl/outside/online.py",
+        "hybrid_rl/run/online.py",
         "self._pending, self._first = None, True\n        self._decide.begin()",
         "self._pending, self._first = None, True",
         "tests/test_online.py",

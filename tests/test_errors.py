@@ -210,7 +210,7 @@ USAGE = [  # overrides of train, words of the line
     ("algo=koopman_active model_learner.forgetting=0", "learner.forgetting=0: must lie in (0, 1]"),
     (
         "algo=koopman_known demonstrations=demonstrations/quadcopter_se3.npz",
-        "is of task quadcopter_se3, not of pendulum",
+        "is of task quadcopter_se3; this run has task pendulum",
     ),
     (
         "task=quadcopter_se3 algo=koopman_known num_demonstrations=1",

@@ -35,7 +35,7 @@ PRIVATE = {  # tool -> what it imports that is not public: take names away, add 
         core.lifting.is_identity data.replay.unpack envs.adapters.unstepped.Unstepped
         run.checkpoints.checkpoint run.folder run.logs.rows.of_world
         run.machine.jax_settings.prepare run.saved.build_run run.saved.restore
-        settings.build.Run training.host_loop.HostEvaluator
+        settings.build.Run outside.host_loop.HostEvaluator
         training.rollout.evaluate_episodes training.rollout.rollout_with_actions
     """,
     "report": """

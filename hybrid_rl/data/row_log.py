@@ -72,6 +72,8 @@ class RowLog:
 
     def read(self, number: int) -> np.ndarray | None:
         """Row `number` []; None if it is not there, or not whole."""
+        if number < 0:
+            return None
         data = os.pread(self._file, self.kind.itemsize, number * self.kind.itemsize)
         if len(data) < self.kind.itemsize:
             return None

@@ -10,6 +10,7 @@ from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl.files.atomic import naming, refuse_link
 from hybrid_rl.networks import precision
+from hybrid_rl.outside.loops import loop_of
 from hybrid_rl.run.checkpoints.store import Store
 from hybrid_rl.run.logs import loggers
 from hybrid_rl.run.logs.log import RunLog
@@ -21,7 +22,6 @@ from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings.build import Run
 from hybrid_rl.training.axis import Axis
 from hybrid_rl.training.loop import Loop
-from hybrid_rl.training.loops import loop_of
 
 
 @dataclass(frozen=True)

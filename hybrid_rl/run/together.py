@@ -21,6 +21,7 @@ from omegaconf import DictConfig, OmegaConf, open_dict
 
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.errors import UsageError
+from hybrid_rl.outside.loops import loop_of
 from hybrid_rl.run import folder, inherited
 from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.folder import SWEEP
@@ -32,7 +33,6 @@ from hybrid_rl.settings.complete import LACKING, refusal, select, source
 from hybrid_rl.settings.words import raw_values
 from hybrid_rl.training.axis import Axis, DifferError
 from hybrid_rl.training.loop import Loop
-from hybrid_rl.training.loops import loop_of
 from hybrid_rl.training.rollout import act, advance, begin
 
 Values = Mapping[str, float]  # key -> value

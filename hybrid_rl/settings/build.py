@@ -224,7 +224,10 @@ def _episode(parts: DictConfig) -> tuple[Episode, tuple[str, ...]]:
     given |= {name: _instantiate(parts.get(name) or None, name) for name in PAID}
     if isinstance(env, External | Robot):
         given |= checks.time_limit(env, given)
-    return Episode(env, **given), notes
+    try:
+        return Episode(env, **given), notes
+    except FieldError as error:
+        raise error.at("episode") from error
 
 
 def expert(config: DictConfig) -> Controller:

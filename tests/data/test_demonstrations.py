@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import small
 
-from hybrid_rl.data.demonstrations import COLUMNS, Demonstrations, load, save
+from hybrid_rl.data.demonstrations import Demonstrations, load, save
 from hybrid_rl.data.replay import Replay, unpack
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.errors import UsageError
@@ -63,10 +63,10 @@ def test_the_first_episodes_are_loaded(file: Path, episodes: int) -> None:
 @pytest.mark.parametrize(
     ("fields", "words"),
     [
-        ({"task": "cartpole"}, "is of task pendulum, not of cartpole"),
+        ({"task": "cartpole"}, "is of task pendulum; this run has task cartpole"),
         ({"episodes": 4}, "num_demonstrations=4: .* has 3"),
         ({"episodes": 0}, "num_demonstrations=0: must be 1 or more"),
-        ({"episode": {"action_repeat": 4}}, "decides every 0.05 s, this pendulum 0.2 s"),
+        ({"episode": {"action_repeat": 4}}, "is of dt 0.05; this run has dt 0.2"),
         ({"file": "nowhere.npz"}, "nowhere.npz: no such file; `python -m hybrid_rl.demonstrate`"),
     ],
 )
@@ -93,20 +93,24 @@ def _with(array: np.ndarray, at: int, value: float) -> np.ndarray:
     ("arrays", "words"),
     [
         ({"reward": None}, "lacks reward"),
-        ({"obs": np.zeros((N, 4))}, r"obs is \(12, 4\), not \(12, 3\)"),
-        ({"episode": EPISODE[:-1]}, r"episode is \(11,\), not \(12,\)"),
-        ({"reward": decisions().reward[:-1]}, r"reward is \(11,\), not \(12,\)"),
+        ({"obs": np.zeros((N, 4))}, r"obs is \(12, 4\); it must be \(12, 3\)"),
+        ({"episode": EPISODE[:-1]}, r"episode is \(11,\); it must be \(12,\)"),
+        ({"reward": decisions().reward[:-1]}, r"reward is \(11,\); it must be \(12,\)"),
         ({"episode": EPISODE[::-1]}, "episodes must follow one another"),
-        ({"obs": _with(decisions().obs, 7, np.nan)}, "obs is not finite in row 7"),
-        ({"reward": _with(decisions().reward, 2, np.inf)}, "reward is not finite in row 2"),
+        ({"obs": _with(decisions().obs, 7, np.nan)}, r"obs is not finite at \[7, 0\]"),
+        ({"reward": _with(decisions().reward, 2, np.inf)}, r"reward is not finite at \[2\]"),
         ({"action": _with(decisions().action, 5, 1.5)}, r"action must lie in \[-1, 1\]"),
         ({"truncated": _with(np.zeros(N), 1, 1)}, "continues after its end, in row 1"),
         ({"reward": np.full(N, "a")}, "reward must hold numbers"),
         ({"obs": np.array([object()])}, "is damaged, cut short, or no .npz file"),
-        ({name: np.zeros(0) for name in (*COLUMNS, "episode")}, "holds no decision"),
+        (
+            {name: array[:0] for name, array in _changed().items() if np.ndim(array)}
+            | {"sizes": (3, 1)},
+            "there is no decision",
+        ),
         (
             {"sizes": (4, 1), "obs": np.zeros((N, 4)), "next_obs": np.zeros((N, 4))},
-            "obs has 4 numbers, this pendulum has 3",
+            "is of obs 4; this run has obs 3",
         ),
     ],
     ids=lambda given: "" if isinstance(given, dict) else given[:20],
@@ -176,7 +180,7 @@ def test_demonstrations_whose_pay_is_unknown_are_refused(tmp_path: Path) -> None
     given = ["task=pendulum", "constraint=torque", "replay.demonstrations=${recorded}"]
     composed = small.load("sac", *given, "episode.action_repeat=2")
     composed = small.with_demonstrations(composed, tmp_path)
-    line = r"^episode\.action_repeat=2: what constraint takes .*; replay\.demonstrations=null"
+    line = r"^replay\.demonstrations: what reward and constraint make of them is unknown with"
     with pytest.raises(UsageError, match=line):
         config.build(composed)
     composed.constraint = None

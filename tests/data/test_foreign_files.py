@@ -118,7 +118,7 @@ def test_names_of_members_are_no_paths_and_occur_once(tmp_path, policy, name):
     with zipfile.ZipFile(file, "a") as data, warnings.catch_warnings():
         warnings.simplefilter("ignore")
         data.writestr(name, npy("(4,)"))
-    with pytest.raises(UsageError, match=r"which this policy lacks|is damaged, cut short"):
+    with pytest.raises(UsageError, match=r"it must be absent|is damaged, cut short"):
         trained.read(str(file))
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.npz"]
 
@@ -206,7 +206,7 @@ def test_numbers_that_become_infinite_are_refused(tmp_path, policy, recorded):
         trained.read(str(tmp_path / "a.npz"))
     rows = dict(np.load(io.BytesIO(recorded)))
     np.savez(tmp_path / "b.npz", **rows | {"obs": np.full((12, 3), 1e300)})
-    with pytest.raises(ValueError, match="obs is not finite in row 0"):
+    with pytest.raises(ValueError, match="obs is not finite at"):
         demonstrations.load(tmp_path / "b.npz")
 
 

@@ -261,7 +261,7 @@ def test_a_teacher_of_other_sizes_is_refused() -> None:
     [
         ("", "expert=null: this task has no expert"),
         ("dagger_learner.most=0", "dagger_learner.most=0: must be a whole number, 1 or more, or"),
-        ("expert.policy.file=policies/ant.npz", "is of task ant, not of pendulum"),
+        ("expert.policy.file=policies/ant.npz", "is of task ant; this run has task pendulum"),
     ],
 )
 def test_the_command_line_refuses_in_one_line(

@@ -20,11 +20,11 @@ from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.adapters.stand_in import ACTION, MOVED, RESET, Cartpole
 from hybrid_rl.envs.adapters.unstepped import ALONE
 from hybrid_rl.errors import UsageError, WorldError
+from hybrid_rl.outside.robot_process import RobotProcess
 from hybrid_rl.run.files.lock import lock
 from hybrid_rl.settings import build as config
 from hybrid_rl.tools.doctor.__main__ import CHECKS, examine
 from hybrid_rl.tools.stand_in import Physics
-from hybrid_rl.training.robot_process import RobotProcess
 from hybrid_rl.types import Spec
 
 pytestmark = pytest.mark.turns(3)
@@ -137,7 +137,7 @@ def test_a_resumed_run_learns_from_the_rows_that_wait(tmp_path, capfd, monkeypat
 
 def test_one_process_moves_a_robot(tmp_path, capfd, monkeypatch):
     """Another one is refused with its number, also after a learner has looked for it."""
-    monkeypatch.setattr(robot, "_real_time", lambda: None)
+    monkeypatch.setattr(robot, "_hurry", lambda: None)
     files = tmp_path / "robot"
     files.mkdir()
     with lock(files, "run"):

@@ -182,11 +182,11 @@ def test_actions_arrive_with_noise() -> None:
 @pytest.mark.parametrize(
     ("fields", "message"),
     [
-        ({"delay": -1}, "episode.delay=-1: must be a whole number, 0 or more"),
-        ({"steps": 0}, "episode.steps=0: must be a whole number, 1 or more"),
-        ({"sensor_noise": (0.1, 0.1)}, "must be 1 or 1 numbers, each 0 or more"),
-        ({"action_noise": -0.1}, "episode.action_noise=-0.1: must be 0 or more"),
-        ({"sensor_noise": (-0.1,)}, "must be 1 or 1 numbers, each 0 or more"),
+        ({"delay": -1}, "delay=-1: must be a whole number, 0 or more"),
+        ({"steps": 0}, "steps=0: must be a whole number, 1 or more"),
+        ({"sensor_noise": (0.1, 0.1)}, "must be one number, or 1 of them"),
+        ({"action_noise": -0.1}, "action_noise=-0.1: must be 0 or more"),
+        ({"sensor_noise": (-0.1,)}, r"sensor_noise=\[-0.1\]: must be 0 or more"),
     ],
 )
 def test_wrong_numbers_raise(fields, message) -> None:

@@ -144,7 +144,7 @@ def test_a_trained_policy_refuses_bad_arguments() -> None:
     with pytest.raises(ValueError, match="obs: entry 0 is not finite"):
         policy(np.array([[0.0], [np.nan]]))
     policy(np.zeros((2, 1)))
-    with pytest.raises(ValueError, match=r"obs of 3 worlds after 2; reset\(\) first"):
+    with pytest.raises(ValueError, match=r"got 3 observations, the episode began with 2"):
         policy(np.zeros((3, 1)))
     with pytest.raises(UsageError, match="seed=5: the run has 3, 4"):
         trained.policy(seed=5)

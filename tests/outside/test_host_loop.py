@@ -21,13 +21,13 @@ from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.data.replay import unpack
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.adapters.gymnasium import GymnasiumEnv
-from hybrid_rl.run import exported
+from hybrid_rl.outside.host_loop import HostEvaluator, HostLoop, seed_of
+from hybrid_rl.outside.loops import loop_of
+from hybrid_rl.run import exported, saved
 from hybrid_rl.run.saved import Trained
 from hybrid_rl.settings import build as config
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.training.host_loop import HostEvaluator, HostLoop, seed_of
 from hybrid_rl.training.loop import Loop
-from hybrid_rl.training.loops import loop_of
 from hybrid_rl.types import EnvState, Params, Spec
 
 pytestmark = pytest.mark.turns(4)
@@ -239,7 +239,7 @@ def test_a_policy_takes_dictionaries_and_export_says_how_they_are_flattened(
     episode, modes = Episode(External(make=Parts), STEPS), {"full": LastEntries()}
     trained = Trained("parts", episode, modes, Params(), (0,), 0, ())
     assert trained.policy()({"y": np.ones(2) / 2, "x": 2}) == 2.5  # within -2 and 4
-    monkeypatch.setattr(export, "load_named", lambda given: trained)
+    monkeypatch.setattr(saved, "load_named", lambda given: trained)
     given = "run=x", "mode=full", f"out={tmp_path / 'p.stablehlo'}"
     assert call(lambda: command.run(export.main), *given) == 0
     assert "obs [5]: x [3], y [2]; gymnasium.spaces.flatten(env." in capsys.readouterr().out

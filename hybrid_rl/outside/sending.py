@@ -21,7 +21,7 @@ from jax.experimental import io_callback
 
 from hybrid_rl.envs.mujoco import xla_callback
 
-TARGET = "hybrid_rl.training.sending"
+TARGET = "hybrid_rl.outside.sending"
 POLL_S = 1.0  # [s] after which it is asked whether the program failed before it sent
 _boxes: dict[int, SimpleQueue] = {}  # of open mailboxes, by ticket
 _tickets = count()
