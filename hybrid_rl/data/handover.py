@@ -1,46 +1,46 @@
-"""The newest parameters of a learner in a file, which another process reads without waiting."""
+"""The newest parameters of a learner in a file, which another process reads without waiting.
+
+The file is one row with a checksum, as those of `row_log`, with a field for each leaf.
+"""
 
 import os
-import zlib
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import jax
 import numpy as np
 
+from hybrid_rl.data.row_log import opened, sealed
 from hybrid_rl.files.atomic import open_own
-
-HEAD = np.dtype([("version", "<i8"), ("check", "<u4"), ("size", "<u8")])
 
 
 def publish(file: Path, tree: Any, version: int) -> None:
     """Write the leaves of `tree`; a reader finds these, or the ones before, and never a part."""
     leaves = [np.asarray(leaf) for leaf in jax.tree.leaves(tree)]
-    body = b"".join(leaf.tobytes() for leaf in leaves)
-    head = np.array((version, zlib.crc32(body), len(body)), HEAD)
+    row = np.array((version, *leaves, 0), _kind(leaves))
     new = file.with_suffix(".new")
     with open_own(new, "wb") as out:
-        out.write(head.tobytes() + body)
+        out.write(sealed(row))
     os.replace(new, file)
 
 
 def latest(file: Path, like: Any) -> tuple[int, Any] | None:
     """(version, tree) with the shapes of `like`; None if there is none, or none that fits."""
     leaves, structure = jax.tree.flatten(like)
-    sizes = [int(np.prod(leaf.shape)) * np.dtype(leaf.dtype).itemsize for leaf in leaves]
+    kind = _kind(leaves)
     try:
         with open_own(file, "rb") as given:
-            data = given.read(HEAD.itemsize + sum(sizes) + 1)
+            row: Any = opened(given.read(kind.itemsize + 1), kind)
     except FileNotFoundError:
         return None
-    if len(data) < HEAD.itemsize:
+    if row is None:
         return None
-    head, body = np.frombuffer(data, HEAD, 1)[0], data[HEAD.itemsize :]
-    if len(body) != sum(sizes) or head["size"] != len(body) or head["check"] != zlib.crc32(body):
-        return None
-    found, at = [], 0
-    for leaf, size in zip(leaves, sizes, strict=True):
-        part = np.frombuffer(body, leaf.dtype, size // np.dtype(leaf.dtype).itemsize, at)
-        found.append(part.reshape(leaf.shape))
-        at += size
-    return int(head["version"]), jax.tree.unflatten(structure, found)
+    version, *found, _ = (row[name] for name in kind.names or ())
+    return int(version), jax.tree.unflatten(structure, found)
+
+
+def _kind(leaves: Sequence[Any]) -> np.dtype:
+    """The fields of the row."""
+    own = [(str(i), leaf.dtype, leaf.shape) for i, leaf in enumerate(leaves)]
+    return np.dtype([("version", "<i8"), *own, ("check", "<u4")])

@@ -163,10 +163,7 @@ def numbers(
 ) -> np.ndarray:
     """The numbers as float32 [*shape], or with `many` also [N, *shape].
 
-    most: the largest size of an entry, but for rounding.
-
-    Raises:
-        UsageError: for other things, another shape, or numbers that are too large or not finite.
+    UsageError for other things, another shape, and numbers that are not finite or beyond +-most.
     """
     try:
         with np.errstate(over="ignore"):

@@ -221,11 +221,7 @@ class Actor:
         return self.env.safe
 
     def _silent(self, why: str) -> None:
-        """End motion, and wait until the robot answers again; the learner shows why.
-
-        Raises:
-            TimeoutError: if it has begun no episode for `alone_s`.
-        """
+        """End motion, and wait for `alone_s` until the robot answers; the learner shows why."""
         self.robot.stop()
         line = f"{self.env.name}: {why}"
         report(self.folder, line + WAITING)

@@ -156,11 +156,7 @@ class HostProgram:
         self.copies: Copies | None = None  # made at the first call
 
     def __call__(self, state: AgentState, start: Array, rounds: Array) -> tuple[AgentState, Any]:
-        """As the program of `Loop`.
-
-        Raises:
-            WorldError: if an environment raises an error, gives NaN, or takes too long.
-        """
+        """As the program of `Loop`."""
         loop, envs, first, made = self.loop, self.loop.agent.num_envs, int(start), False
         each = len(loop.seeds), envs
         if self.copies is None:

@@ -22,9 +22,6 @@ def loop_of(
     """On the device; on the host where its environment is there; or on a robot.
 
     folder: of the run, in which the files of a robot are. axis: of `Loop`.
-
-    Raises:
-        UsageError: for a world that the caller steps, or more than one learner on a robot.
     """
     env = agent.episode.env
     if isinstance(env, Robot):

@@ -140,8 +140,7 @@ class RobotProgram:
         seconds = behind * self.env.spec.dt
         if seconds >= 2 * self.reported:
             self.reported = seconds
-            line = f"the learner is {behind:,} decisions ({seconds:.0f} s) behind the robot; "
-            line += "settings=light, fewer updates or less load on this machine make it faster"
+            line = f"the learner is {behind:,} decisions ({seconds:.0f} s) behind the robot"
             print(f"hybrid_rl: {line}", file=sys.stderr, flush=True)
 
     def _metrics(self, own: list[list[float]]) -> dict[str, np.ndarray]:

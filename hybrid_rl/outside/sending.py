@@ -56,9 +56,7 @@ class Mailbox:
     def next(self, result: Any) -> np.ndarray:
         """The actions [S * E, m] of the next program, whose result is `result`.
 
-        Raises:
-            Exception: what the program raised before it sent.
-            RuntimeError: if it ended without sending.
+        Raises what the program raised before it sent.
         """
         parts: list[np.ndarray] = []
         while len(parts) < self.parts:

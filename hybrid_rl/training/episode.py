@@ -7,7 +7,6 @@ learning"). With `randomise` each episode has another body (`envs/mujoco/randomi
 """
 
 from collections.abc import Mapping
-from dataclasses import fields
 from functools import partial
 from typing import Any
 
@@ -23,7 +22,16 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.fields import Count, FieldError, Natural, NotNegative, part
 from hybrid_rl.protocols import Constraint, Env, Goal
 from hybrid_rl.protocols.contract import Contract
-from hybrid_rl.training.wrappers import put_around
+from hybrid_rl.training.wrappers import (
+    Constrained,
+    Delayed,
+    Disturbed,
+    Limited,
+    Paid,
+    Randomised,
+    Repeated,
+    Sensed,
+)
 from hybrid_rl.types import EnvState, Spec
 
 # Environments always compute in full precision, networks perhaps with less on an accelerator.
@@ -64,25 +72,17 @@ class Episode:
         if len(self.std) not in (1, self.env.spec.obs):
             line = f"must be one number, or {self.env.spec.obs} of them"
             raise FieldError(self, "sensor_noise", line)
-        if self.randomise is not None:
-            object.__setattr__(self, "randomise", self._ranges(self.randomise))
-
-    def _ranges(self, given: Ranges | Mapping[str, Any]) -> Ranges | None:
-        """Of the bodies, as they were given; None if all have the same."""
-        names = [each.name for each in fields(Ranges)]
-        if not isinstance(given, Ranges):
-            if not isinstance(given, Mapping) or not {*given} <= {*names}:
-                line = f"must be {{NAME: [low, high]}}, with names of {', '.join(names)}"
-                raise FieldError(self, "randomise", line)
+        if isinstance(self.randomise, Mapping):
             try:
-                given = Ranges(**given)
-            except FieldError as error:
-                raise ValueError(f"episode.randomise.{error.line}") from error
-        if given == Ranges():
-            return None
-        if not isinstance(jax.eval_shape(self.env.reset, jax.random.key(0)).data, PhysicsState):
+                object.__setattr__(self, "randomise", Ranges(**self.randomise))
+            except (FieldError, TypeError) as error:
+                line = f".{error.line}" if isinstance(error, FieldError) else f": {error}"
+                raise ValueError(f"episode.randomise{line}") from error
+        if self.randomise == Ranges():
+            object.__setattr__(self, "randomise", None)
+        first = jax.eval_shape(self.env.reset, jax.random.key(0)) if self.randomise else None
+        if first is not None and not isinstance(first.data, PhysicsState):
             raise FieldError(self, "randomise", "only robots in MuJoCo have other bodies")
-        return given
 
     @property
     def std(self) -> tuple[float, ...]:
@@ -91,8 +91,14 @@ class Episode:
 
     @property
     def world(self) -> Env:
-        """The environment with everything that is around it."""
-        return put_around(self.env, self)
+        """The environment with everything that is around it (see `wrappers`)."""
+        env = self.env if self.randomise is None else Randomised(self.env, self.randomise)
+        env = env if self.reward is None else Paid(env, self.reward)
+        env = Limited(Repeated(env, self.action_repeat), self.steps)
+        env = env if self.constraint is None else Constrained(env, self.constraint)
+        env = Disturbed(env, self.action_noise) if self.action_noise else env
+        env = Delayed(env, self.delay) if self.delay else env
+        return Sensed(env, self.std) if any(self.std) else env
 
     @property
     def spec(self) -> Spec:
