@@ -1,4 +1,4 @@
-"""Decisions of a robot in a file: one process appends them, another reads them.
+"""Rows, one for each decision, and their file: one process appends them, another reads them.
 
 A row is written whole by one call, and has its number and a checksum. What is in the file outlives
 both processes, so nothing has to be sent again or acknowledged: a learner goes on reading behind
@@ -16,7 +16,10 @@ from hybrid_rl.types import Spec
 
 
 def row_type(spec: Spec) -> np.dtype:
-    """The fields of a row."""
+    """The fields of a row, of which `outside.learner.transition` makes a transition.
+
+    A robot's process writes all of them (`outside.actor`), a loop of the user's only one time.
+    """
     return np.dtype(
         [
             ("number", "<i8"),  # from 0

@@ -48,13 +48,14 @@ class Acting:
             return u, control, keys
 
         self._rest = jax.jit(jax.vmap(first, axis_size=learners))(self._numbers)
-        self._program = jax.jit(jax.vmap(decide))
+        self._program: Any = jax.jit(jax.vmap(decide))
         self.begin(keys)
 
     def compile(self, params: Params) -> None:
         """Compile for parameters like these, before the first decision."""
         obs = np.zeros((*self.keys.shape, self.spec.obs), np.float32)
-        self._program(self._numbers, params, self._rest, obs, self.keys)
+        like = self._numbers, params, self._rest, obs, self.keys
+        self._program = self._program.lower(*like).compile()
 
     def begin(self, keys: Array | None = None, where: np.ndarray | None = None) -> None:
         """Episodes begin, with these keys if there are any; where: [S, N] bool, only in these."""
@@ -84,7 +85,8 @@ class Exploring:
         self._acting = Acting(agent.spec, agent.controller, key[None, None])
         self.like = jax.eval_shape(lambda: agent.params(agent.init(key)))  # of the parameters
         self.take(jax.tree.map(lambda leaf: np.zeros(leaf.shape, leaf.dtype), self.like))
-        self(np.zeros(agent.spec.obs), random_steps)
+        self._acting.compile(self._with(0))
+        self(np.zeros(agent.spec.obs), random_steps)  # the first call takes longer
         self.begin()
         self.params = None
 
@@ -98,10 +100,15 @@ class Exploring:
 
     def __call__(self, obs: np.ndarray, decisions: int) -> np.ndarray:
         """The action [m] at `obs` [o], after so many decisions of the run."""
-        if decisions < self._random_steps or self.params is None:
+        if decisions < self._random_steps:
             return self._random.uniform(-1, 1, self._size).astype(np.float32)
-        params = self.params._replace(decisions=np.full(1, decisions, np.int32))
-        return self._acting(params, np.array(obs, np.float32)[None, None])[0, 0]
+        return self._acting(self._with(decisions), np.array(obs, np.float32)[None, None])[0, 0]
+
+    def _with(self, decisions: int) -> Params:
+        """The parameters after so many decisions."""
+        assert self.params is not None
+        count: Any = np.full(1, decisions, np.int32)
+        return self.params._replace(decisions=count)
 
 
 class TrainedPolicy:

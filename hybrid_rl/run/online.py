@@ -272,8 +272,6 @@ class OnlineLearner:
 @contextmanager
 def _writable(folder: Path | str) -> Iterator[Path]:
     """The folder, locked, unless it holds a run that `OnlineLearner.save` has not written."""
-    if not str(folder):
-        raise UsageError("folder=: give the folder that save writes")
     with lock(Path(folder), "folder") as path:
         if (path / "config.yaml").exists():
             env = run_folder.parse_config(path, "folder").get("env")

@@ -35,7 +35,7 @@ from hybrid_rl.settings.compose import (
 )
 from hybrid_rl.settings.groups import CONF, groups, search_path
 from hybrid_rl.settings.registry import register
-from hybrid_rl.settings.values import COUNTS, PAID, SECTIONS, check, check_fields, check_kinds
+from hybrid_rl.settings.values import COUNTS, PAID, SECTIONS, check, check_kinds
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import Imagination
@@ -219,15 +219,12 @@ def _episode(parts: DictConfig) -> tuple[Episode, tuple[str, ...]]:
     notes = check_world(env)
     if not type(env).__module__.startswith("hybrid_rl.") and "steps" not in parts.episode:
         notes += (f"episode.steps is not set by the task: {Episode.steps:,} decisions an episode",)
-    check_fields(parts.episode, Episode, "episode.")
-    given = _instantiate(parts.episode, "episode")
+    target = {"_target_": "hybrid_rl.training.episode.Episode", "env": env}
+    given = target | _instantiate(parts.episode, "episode")
     given |= {name: _instantiate(parts.get(name) or None, name) for name in PAID}
     if isinstance(env, External | Robot):
         given |= checks.time_limit(env, given)
-    try:
-        return Episode(env, **given), notes
-    except FieldError as error:
-        raise error.at("episode") from error
+    return build_part(given, where="episode"), notes
 
 
 def expert(config: DictConfig) -> Controller:

@@ -141,15 +141,6 @@ def test_an_inconsistent_file_is_refused(file: Path, change: Callable, words: st
         opened(file)
 
 
-@pytest.mark.parametrize("share", [0.0, 0.3, 0.9])
-def test_a_file_cut_short_is_refused(file: Path, share: float) -> None:
-    """At any length."""
-    data = file.read_bytes()
-    file.write_bytes(data[: int(share * len(data))])
-    with pytest.raises(ValueError, match=r"is damaged, cut short, or no \.npz"):
-        opened(file)
-
-
 def test_parameters_that_are_not_finite_are_not_written(tmp_path: Path) -> None:
     """The message names the array."""
     bad = jax.tree.map(lambda leaf: leaf * jnp.nan, PARAMS)
