@@ -51,7 +51,7 @@ ALLOWED = {
     "outside": {"errors", *SHARED, "files", "envs", "data", "training", "outside"},
     "run": {*CONFIG, "core", "archive", "data", "controllers", "outside", "run"},  # on the host
     "cli": {*CONFIG, "run", "cli"},  # what the commands share
-    "analysis": {*SHARED, *CONFIG, "data", "run", "cli", "analysis"},
+    "analysis": {*SHARED, *CONFIG, "data", "outside", "run", "cli", "analysis"},
     # as a user's project would, and nothing but the command `render` imports it
     "thesis": {*SHARED, *CONFIG, "data", "beliefs", "run", "cli", "analysis", "thesis"},
 }

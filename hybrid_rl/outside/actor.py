@@ -2,8 +2,8 @@
 
     observe -> decide with the newest parameters -> limit -> apply -> append a row -> sleep
 
-Files in a folder connect it with the learner: `rows` (data.row_log) in one direction, `parameters`
-(data.handover) in the other, and `stop`, whose existence ends the motion. So either process can be
+Files in a folder connect it with the learner: `rows` (row_log) in one direction, `parameters`
+(handover) in the other, and `stop`, whose existence ends the motion. So either process can be
 killed and started again while the other one goes on.
 
 Times are those of one monotonic clock. Decision k begins at t0 + k dt; after a missed deadline the
@@ -25,12 +25,12 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.data import handover
-from hybrid_rl.data.row_log import RowLog, row_type
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import FAULTS, WorldError, blame, one_line
+from hybrid_rl.outside import handover
 from hybrid_rl.outside.acting import Exploring
 from hybrid_rl.outside.robot_process import WAITING, report
+from hybrid_rl.outside.row_log import RowLog, row_type
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.types import Params
 

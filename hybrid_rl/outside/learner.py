@@ -18,8 +18,8 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.data.replay import Memory
-from hybrid_rl.data.row_log import row_type
 from hybrid_rl.errors import UsageError
+from hybrid_rl.outside.row_log import row_type
 from hybrid_rl.training.agent import AgentState
 from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Loop, put
 from hybrid_rl.training.metrics import outcome

@@ -18,13 +18,13 @@ import jax
 import numpy as np
 from jax import Array
 
-from hybrid_rl.data import handover
-from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import WorldError
 from hybrid_rl.files.atomic import own_folder
+from hybrid_rl.outside import handover
 from hybrid_rl.outside.learner import RowLearner, RowLoop
 from hybrid_rl.outside.robot_process import RobotProcess
+from hybrid_rl.outside.row_log import RowLog
 from hybrid_rl.training.agent import AgentState, update_schedule
 
 RESUMED = "the robot went on, or begins a new episode: its rows so far are read first, and the "

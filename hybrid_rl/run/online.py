@@ -25,11 +25,11 @@ import jax
 import numpy as np
 from omegaconf import DictConfig
 
-from hybrid_rl.data.row_log import row_type
 from hybrid_rl.envs.adapters.robot import Outside
 from hybrid_rl.errors import DivergenceError, UsageError
 from hybrid_rl.outside.acting import Exploring, numbers
 from hybrid_rl.outside.learner import RowLearner, RowLoop
+from hybrid_rl.outside.row_log import row_type
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.checkpoints.store import Record, Store

@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 from counting import LINE, Counting, broken, lost, moved, of
 
-from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.errors import WorldError
 from hybrid_rl.outside import actor as actors
 from hybrid_rl.outside.actor import Actor
 from hybrid_rl.outside.robot_process import RobotProcess
+from hybrid_rl.outside.row_log import RowLog
 from hybrid_rl.settings import build as config
 
 

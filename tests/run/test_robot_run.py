@@ -15,12 +15,12 @@ from tiny import call, only_line
 import hybrid_rl
 from hybrid_rl import evaluate, robot
 from hybrid_rl.cli import command
-from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.adapters.stand_in import ACTION, MOVED, RESET, Cartpole
 from hybrid_rl.envs.adapters.unstepped import ALONE
 from hybrid_rl.errors import UsageError, WorldError
 from hybrid_rl.outside.robot_process import RobotProcess
+from hybrid_rl.outside.row_log import RowLog
 from hybrid_rl.run.files.lock import lock
 from hybrid_rl.settings import build as config
 from hybrid_rl.tools.doctor.__main__ import CHECKS, examine

@@ -11,8 +11,8 @@ from typing import Any
 import jax
 import numpy as np
 
-from hybrid_rl.data.row_log import opened, sealed
 from hybrid_rl.files.atomic import open_own
+from hybrid_rl.outside.row_log import opened, sealed
 
 
 def publish(file: Path, tree: Any, version: int) -> None:
