@@ -24,15 +24,12 @@ thesis uses (its body weighs 182 kg there because the importer ignores the densi
 
 from typing import Literal
 
-import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs.locomotion import pybullet_reward
-from hybrid_rl.envs.mujoco.body import Body
-from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
+from hybrid_rl.envs.locomotion import Runner, pybullet_reward
+from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.fields import part
-from hybrid_rl.types import EnvState, Spec
 
 ASSETS = {  # by contacts and integrator
     ("points", "rk4"): "ant.xml",
@@ -40,54 +37,30 @@ ASSETS = {  # by contacts and integrator
     ("capsules", "rk4"): "ant_capsules.xml",
     ("capsules", "euler"): "ant_capsules_euler.xml",
 }
-STEPS = 5  # physics steps per decision
-DT = 0.05  # [s] of a decision
 
 
 @part
-class Ant(Body):
+class Ant(Runner):
     """Ant; `physics` is native, mjx, warp or auto."""
 
     reward: Literal["pybullet", "gymnasium"] = "pybullet"
     integrator: Literal["rk4", "euler"] = "rk4"  # as Gymnasium; euler, as Brax, costs a quarter
     contacts: Literal["points", "capsules"] = "points"
 
-    @property
-    def spec(self) -> Spec:
-        """Observation size, action size and decision interval."""
-        return Spec(obs=27, act=8, dt=DT)
+    steps, dt, hidden = 5, 0.05, 2
 
     @property
-    def _body(self) -> Physics:
-        return self._physics(ASSETS[self.contacts, self.integrator])
+    def _asset(self) -> str:
+        return ASSETS[self.contacts, self.integrator]
 
-    def reset(self, key: Array) -> EnvState:
-        """A random initial state."""
-        key_pos, key_vel = jax.random.split(key)
-        upright = jnp.asarray(self._body.model.qpos0, jnp.float32)
-        qpos = upright + jax.random.uniform(key_pos, (15,), jnp.float32, -0.1, 0.1)
-        qvel = 0.1 * jax.random.normal(key_vel, (14,), jnp.float32)
-        zero = jnp.float32(0.0)
-        return _state(self._body.reset(qpos, qvel), zero, jnp.zeros((), bool), zero)
-
-    def step(self, state: EnvState, action: Array) -> EnvState:
-        """The state after one decision. action: [8] in [-1, 1]."""
-        action = jnp.clip(action, -1.0, 1.0)
-        data = self._body.step(state.data, action, STEPS)
-        speed = (data.qpos[0] - state.data.qpos[0]) / DT
-        alive = ~self.ended(data.qpos[2:])
+    def _paid(self, data: PhysicsState, control: Array, speed: Array) -> tuple[Array, Array]:
+        ended, model = self.ended(data.qpos[2:]), self._body.model
         if self.reward == "gymnasium":
-            reward = alive + speed - 0.5 * (action**2).sum()
-        else:
-            reward = self._pybullet(data, action, alive, speed)
-        return _state(data, reward, ~alive, speed)
-
-    def _pybullet(self, data: PhysicsState, action: Array, alive: Array, speed: Array) -> Array:
-        model = self._body.model
+            return ~ended + speed - 0.5 * (control**2).sum(), ended
         joints = model.actuator_trnid[:, 0]  # motors and joints are in different orders
         angle, velocity = data.qpos[7:][joints - 1], data.qvel[6:][joints - 1]
         limits = jnp.asarray(model.jnt_range[joints], jnp.float32)
-        return pybullet_reward(alive, speed, action, angle, velocity, limits)
+        return pybullet_reward(~ended, speed, control, angle, velocity, limits), ended
 
     def ended(self, obs: Array) -> Array:
         """Whether [] an episode terminates at obs [27], of which it needs the height."""
@@ -101,8 +74,3 @@ class Ant(Body):
         `speed` is the velocity along x.
         """
         return {"height": obs[0], "speed": obs[13], "velocity": obs[13:15], "turning": obs[18]}
-
-
-def _state(data: PhysicsState, reward: Array, terminated: Array, speed: Array) -> EnvState:
-    obs = jnp.concatenate((data.qpos[2:], data.qvel))
-    return EnvState(data, obs, reward, terminated, jnp.zeros((), bool), {"speed": speed}, {})

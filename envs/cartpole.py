@@ -78,5 +78,4 @@ def _state(data: PhysicsState, reward: Array) -> EnvState:
     x, theta = data.qpos
     v, w = data.qvel
     obs = jnp.stack((x, v, jnp.cos(theta), jnp.sin(theta), w))
-    no = jnp.zeros((), bool)
-    return EnvState(data, obs, reward, no, no, {}, {})
+    return EnvState(data, obs, reward)

@@ -24,66 +24,62 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs.mujoco.body import Body
+from hybrid_rl.envs.locomotion import Runner
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
 from hybrid_rl.fields import part
-from hybrid_rl.types import EnvState, Spec
+from hybrid_rl.types import Spec
 
 ASSETS = {"rk4": "humanoid.xml", "euler": "humanoid_euler.xml"}  # by integrator
-STEPS = 5  # physics steps per decision
-DT = 0.015  # [s] of a decision
 LIMIT = 0.4  # of a control
 REWARD_READS = ("subtree_com", "cfrc_ext")
 OBSERVATION_READS = {"short": (), "full": ("cinert", "cvel", "qfrc_actuator")}
 
 
 @part
-class Humanoid(Body):
+class Humanoid(Runner):
     """Humanoid; `physics` is native, mjx, warp or auto."""
 
     observation: Literal["short", "full"] = "short"
     integrator: Literal["rk4", "euler"] = "rk4"  # as Gymnasium; euler costs a quarter
 
+    steps, dt, hidden, spread = 5, 0.015, 2, 0.01
+
     @property
     def spec(self) -> Spec:
         """Observation size, action size and decision interval."""
-        return Spec(obs=45 if self.observation == "short" else 348, act=17, dt=DT)
+        return Spec(obs=45 if self.observation == "short" else 348, act=17, dt=self.dt)
+
+    @property
+    def _asset(self) -> str:
+        return ASSETS[self.integrator]
 
     @property
     def _body(self) -> Physics:
-        reads = REWARD_READS + OBSERVATION_READS[self.observation]
-        return self._physics(ASSETS[self.integrator], reads)
+        return self._physics(self._asset, REWARD_READS + OBSERVATION_READS[self.observation])
 
-    def reset(self, key: Array) -> EnvState:
-        """A random initial state."""
-        key_pos, key_vel = jax.random.split(key)
-        upright = jnp.asarray(self._body.model.qpos0, jnp.float32)
-        qpos = upright + jax.random.uniform(key_pos, (24,), jnp.float32, -0.01, 0.01)
-        qvel = jax.random.uniform(key_vel, (23,), jnp.float32, -0.01, 0.01)
-        zero = jnp.float32(0.0)
-        return self._state(self._body.reset(qpos, qvel), zero, jnp.zeros((), bool), zero)
+    def _start(self, key: Array, size: int) -> Array:
+        return jax.random.uniform(key, (size,), jnp.float32, -self.spread, self.spread)
 
-    def step(self, state: EnvState, action: Array) -> EnvState:
-        """The state after one decision. action: [17] in [-1, 1]."""
-        control = LIMIT * jnp.clip(action, -1.0, 1.0)
-        data = self._body.step(state.data, control, STEPS)
-        x, before = (self._body.read(each, "subtree_com")[0, 0] for each in (data, state.data))
-        speed, ended = (x - before) / DT, self.ended(data.qpos[2:])
+    def _control(self, action: Array) -> Array:
+        return LIMIT * action
+
+    def _x(self, data: PhysicsState) -> Array:
+        return self._body.read(data, "subtree_com")[0, 0]
+
+    def _paid(self, data: PhysicsState, control: Array, speed: Array) -> tuple[Array, Array]:
+        ended = self.ended(data.qpos[2:])
         contact = jnp.minimum(5e-7 * (self._body.read(data, "cfrc_ext") ** 2).sum(), 10.0)
-        reward = 5.0 * ~ended + 1.25 * speed - 0.1 * (control**2).sum() - contact
-        return self._state(data, reward, ended, speed)
+        return 5.0 * ~ended + 1.25 * speed - 0.1 * (control**2).sum() - contact, ended
 
-    def _state(
-        self, data: PhysicsState, reward: Array, terminated: Array, speed: Array
-    ) -> EnvState:
-        seen = [data.qpos[2:], data.qvel]
-        if self.observation == "full":
-            inertia, velocity, torque, force = (
-                self._body.read(data, name) for name in (*OBSERVATION_READS["full"], "cfrc_ext")
-            )
-            seen += [inertia[1:].ravel(), velocity[1:].ravel(), torque[6:], force[1:].ravel()]
-        no = jnp.zeros((), bool)
-        return EnvState(data, jnp.concatenate(seen), reward, terminated, no, {"speed": speed}, {})
+    def _obs(self, data: PhysicsState) -> Array:
+        seen = super()._obs(data)
+        if self.observation == "short":
+            return seen
+        inertia, velocity, torque, force = (
+            self._body.read(data, name) for name in (*OBSERVATION_READS["full"], "cfrc_ext")
+        )
+        more = inertia[1:].ravel(), velocity[1:].ravel(), torque[6:], force[1:].ravel()
+        return jnp.concatenate((seen, *more))
 
     def ended(self, obs: Array) -> Array:
         """Whether [] an episode terminates at obs [o], of which it needs the height."""

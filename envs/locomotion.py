@@ -1,4 +1,4 @@
-"""pybullet's reward for walking robots, shared by ant, half-cheetah, hopper and walker.
+"""Robots that run forward: what they share, and pybullet's reward for them.
 
     r = alive + dx/dt - 2 mean_i |a_i w_i| - 0.1 mean_i a_i^2 - 0.1 #{i : |theta_i| > 0.99}
 
@@ -9,8 +9,85 @@ over all parts).
 Source: pybullet_envs, WalkerBaseBulletEnv (the thesis' reward, Appendix B).
 """
 
+from abc import abstractmethod
+from typing import ClassVar
+
+import jax
 import jax.numpy as jnp
 from jax import Array
+
+from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.envs.mujoco.body import Body
+from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
+from hybrid_rl.fields import part
+from hybrid_rl.types import EnvState, Spec
+
+
+@part
+class Runner(Body):
+    """A robot that runs along x, from around the upright pose; its class says what is paid."""
+
+    steps: ClassVar[int]  # physics steps per decision
+    dt: ClassVar[float]  # [s] of a decision
+    hidden: ClassVar[int]  # coordinates of the root that are not observed: x, or x and y
+    spread: ClassVar[float] = 0.1  # [m, rad] largest distance from the upright pose at the start
+
+    @property
+    @abstractmethod
+    def _asset(self) -> str:
+        """The file of the model."""
+
+    @property
+    def _body(self) -> Physics:
+        return self._physics(self._asset)
+
+    @abstractmethod
+    def _paid(self, data: PhysicsState, control: Array, speed: Array) -> tuple[Array, Array]:
+        """The reward [] of a decision that led to `data`, and whether [] the episode ends."""
+
+    @property
+    def spec(self) -> Spec:
+        """Observation size, action size and decision interval."""
+        model = mjcf.load(self._asset)
+        return Spec(obs=model.nq - self.hidden + model.nv, act=model.nu, dt=self.dt)
+
+    def reset(self, key: Array) -> EnvState:
+        """A random initial state."""
+        key_pos, key_vel = jax.random.split(key)
+        upright = jnp.asarray(self._body.model.qpos0, jnp.float32)
+        away = jax.random.uniform(key_pos, upright.shape, jnp.float32, -self.spread, self.spread)
+        qvel = self._start(key_vel, self._body.model.nv)
+        return self._state(self._body.reset(upright + away, qvel))
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """The state after one decision. action: [m] in [-1, 1]."""
+        control = self._control(jnp.clip(action, -1.0, 1.0))
+        data = self._body.step(state.data, control, self.steps)
+        speed = (self._x(data) - self._x(state.data)) / self.dt
+        reward, ended = self._paid(data, control, speed)
+        metrics = {"speed": speed}
+        return self._state(data).replace(reward=reward, terminated=ended, metrics=metrics)
+
+    def _state(self, data: PhysicsState) -> EnvState:
+        """At the start of an episode."""
+        zero = jnp.float32(0.0)
+        return EnvState(data, self._obs(data), zero, metrics={"speed": zero})
+
+    def _start(self, key: Array, size: int) -> Array:
+        """qvel [size] at the start: 0.1 N(0, 1)."""
+        return 0.1 * jax.random.normal(key, (size,), jnp.float32)
+
+    def _control(self, action: Array) -> Array:
+        """Controls [m] of an action [m] in [-1, 1]."""
+        return action
+
+    def _x(self, data: PhysicsState) -> Array:
+        """The position [] [m] whose speed is paid."""
+        return data.qpos[0]
+
+    def _obs(self, data: PhysicsState) -> Array:
+        """The observation [o]."""
+        return jnp.concatenate((data.qpos[self.hidden :], data.qvel))
 
 
 def pybullet_reward(

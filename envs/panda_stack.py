@@ -38,7 +38,7 @@ from jax import Array
 
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.kinematics import Chain, damped_inverse, rotate_towards, stay_within
-from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
+from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, Simulator
 from hybrid_rl.fields import NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
 
@@ -63,7 +63,7 @@ BLOCK_SPEED = slice(9, 12)  # in qvel
 class PandaStack:
     """Panda stacks a block; `physics` is native, mjx, warp or auto."""
 
-    physics: str = "auto"
+    physics: Simulator = "auto"
     speed: NotNegative = 0.15  # [m/s] in each direction at a = 1
     lag: NotNegative = 0.2  # [s] time constant of the filter; 0: no filter
     grip: Literal["near", "action"] = "near"  # closes automatically; action: by a fourth action
@@ -85,9 +85,6 @@ class PandaStack:
     hold: NotNegative = 5.0  # [1/s] gain on orientation
     posture: NotNegative = 0.5  # [1/s] gain on the initial posture, in the null space
     damping: NotNegative = 0.02  # of the least squares, for [m] and [rad]
-
-    def __post_init__(self) -> None:
-        check(self.physics)
 
     @property
     def spec(self) -> Spec:
@@ -184,8 +181,8 @@ class PandaStack:
         metrics = {"success": success, "grasped": grasped, "distance": _norm(block - goal)}
         metrics = {name: value.astype(jnp.float32) for name, value in metrics.items()}
         reward = stage - self.penalty * (_norm(wrench) + _norm(action))
-        no = jnp.zeros((), bool)
-        return EnvState(data, obs, reward, success & self.terminate, no, metrics, info)
+        ended = success & self.terminate
+        return EnvState(data, obs, reward, ended, metrics=metrics, info=info)
 
     def _observation(
         self, tool: Array, block: Array, goal: Array, closed: Array, wrench: Array

@@ -18,72 +18,44 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs.locomotion import pybullet_reward
-from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.envs.mujoco.body import Body
-from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
+from hybrid_rl.envs.locomotion import Runner, pybullet_reward
+from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.fields import Positive, part
-from hybrid_rl.types import EnvState, Spec
-
-STEPS = 4  # physics steps per decision
-DT = 0.008  # [s] of a decision
 
 
 @part
-class PlanarLegs(Body):
+class PlanarLegs(Runner):
     """A robot by its `asset` and `alive`; `physics` is native, mjx, warp or auto."""
 
     reward: Literal["gymnasium", "pybullet"] = "gymnasium"
     velocity_limit: Positive | None = 10.0  # of observed velocities [m/s, rad/s]
     asset: ClassVar[str]
+    steps, dt, hidden, spread = 4, 0.008, 1, 0.005
 
     @abstractmethod
     def alive(self, qpos: Array, qvel: Array) -> Array:
         """Whether [] an episode goes on at qpos without x [nq - 1] and qvel [nv]."""
 
     @property
-    def spec(self) -> Spec:
-        """Observation size, action size and decision interval."""
-        model = mjcf.load(self.asset)
-        return Spec(obs=model.nq - 1 + model.nv, act=model.nu, dt=DT)
+    def _asset(self) -> str:
+        return self.asset
 
-    @property
-    def _body(self) -> Physics:
-        return self._physics(self.asset)
+    def _start(self, key: Array, size: int) -> Array:
+        return jax.random.uniform(key, (size,), jnp.float32, -self.spread, self.spread)
 
-    def reset(self, key: Array) -> EnvState:
-        """A random initial state."""
-        key_pos, key_vel = jax.random.split(key)
-        upright = jnp.asarray(self._body.model.qpos0, jnp.float32)
-        noise = [
-            jax.random.uniform(k, upright.shape, jnp.float32, -0.005, 0.005)
-            for k in (key_pos, key_vel)
-        ]
-        zero = jnp.float32(0.0)
-        data = self._body.reset(upright + noise[0], noise[1])
-        return self._state(data, zero, jnp.zeros((), bool), zero)
-
-    def step(self, state: EnvState, action: Array) -> EnvState:
-        """The state after one decision. action: [m] in [-1, 1]."""
-        action = jnp.clip(action, -1.0, 1.0)
-        data = self._body.step(state.data, action, STEPS)
-        speed = (data.qpos[0] - state.data.qpos[0]) / DT
-        alive = self.alive(data.qpos[1:], data.qvel)
-        if self.reward == "gymnasium":
-            reward = alive + speed - 0.001 * (action**2).sum()
-        else:
-            limits = jnp.asarray(self._body.model.jnt_range[3:], jnp.float32)
-            reward = pybullet_reward(alive, speed, action, data.qpos[3:], data.qvel[3:], limits)
-        return self._state(data, reward, ~alive, speed)
-
-    def _state(
-        self, data: PhysicsState, reward: Array, terminated: Array, speed: Array
-    ) -> EnvState:
+    def _obs(self, data: PhysicsState) -> Array:
         seen, limit = data.qvel, self.velocity_limit
         if limit is not None:
             seen = jnp.clip(seen, -limit, limit)
-        obs = jnp.concatenate((data.qpos[1:], seen))
-        return EnvState(data, obs, reward, terminated, jnp.zeros((), bool), {"speed": speed}, {})
+        return jnp.concatenate((data.qpos[1:], seen))
+
+    def _paid(self, data: PhysicsState, control: Array, speed: Array) -> tuple[Array, Array]:
+        alive = self.alive(data.qpos[1:], data.qvel)
+        if self.reward == "gymnasium":
+            return alive + speed - 0.001 * (control**2).sum(), ~alive
+        limits = jnp.asarray(self._body.model.jnt_range[3:], jnp.float32)
+        reward = pybullet_reward(alive, speed, control, data.qpos[3:], data.qvel[3:], limits)
+        return reward, ~alive
 
     def ended(self, obs: Array) -> Array:
         """Whether [] an episode terminates at obs [o]."""

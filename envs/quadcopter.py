@@ -158,7 +158,7 @@ class Quadcopter(Body):
         if self.task == "track":
             parts, cost = [*parts, away], cost + 5 * (away**2).sum()
             error = error + (away**2).sum()
-        no, success = jnp.zeros((), bool), (error < SUCCESS_ERROR).astype(jnp.float32)
-        reward = -DT * (cost + effort)
-        obs = jnp.concatenate(parts)
-        return EnvState(data, obs, reward, no, no, {"success": success, "error": error}, info)
+        success = (error < SUCCESS_ERROR).astype(jnp.float32)
+        metrics = {"success": success, "error": error}
+        obs, reward = jnp.concatenate(parts), -DT * (cost + effort)
+        return EnvState(data, obs, reward, metrics=metrics, info=info)

@@ -33,7 +33,7 @@ from hybrid_rl.envs.mujoco.kinematics import (
     rotate,
     rotate_towards,
 )
-from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
+from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, Simulator
 from hybrid_rl.envs.sawyer_push import HOME
 from hybrid_rl.fields import NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
@@ -55,7 +55,7 @@ THREE = (  # a disc, a box and a bar, without symmetry
 class SawyerProbe:
     """Sawyer among fixed objects; `physics` is native, mjx, warp or auto."""
 
-    physics: str = "auto"
+    physics: Simulator = "auto"
     objects: tuple[tuple[float, ...], ...] = THREE
     acceleration: Positive = 0.3  # [m/s^2] a
     drag: NotNegative = 0.5  # [1/s] b
@@ -72,7 +72,6 @@ class SawyerProbe:
     spec = Spec(obs=4, act=2, dt=DT)
 
     def __post_init__(self) -> None:
-        check(self.physics)
         for name in ("objects", "low", "high", "theta"):
             object.__setattr__(self, name, getattr(self._plane, name))
 
@@ -162,8 +161,7 @@ class SawyerProbe:
         obs = jnp.concatenate([tip[:2], jacobian[:2] @ data.qvel])
         x, y, angle = info["pose"]
         metrics = {"touch": touch, "pose_x": x, "pose_y": y, "pose_angle": angle}
-        no = jnp.zeros((), bool)
-        return EnvState(data, obs, touch, no, no, metrics, info)
+        return EnvState(data, obs, touch, metrics=metrics, info=info)
 
     def distance(self, s: Array, pose: Array | None = None) -> Array:
         """Signed distance [] [m] of s [2] to the nearest surface; `pose` [3] is theta."""

@@ -31,7 +31,7 @@ from jax import Array
 
 from hybrid_rl.envs.mujoco import kinematics, mjcf
 from hybrid_rl.envs.mujoco.kinematics import Chain, damped_inverse, rotate_towards, stay_within
-from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
+from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, Simulator
 from hybrid_rl.fields import Discount, NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
 
@@ -54,7 +54,7 @@ TIP = Chain(ASSET, "tip")
 class SawyerPush:
     """Sawyer pushes a block; `physics` is native, mjx, warp or auto."""
 
-    physics: str = "auto"
+    physics: Simulator = "auto"
     reward: Literal["thesis", "code"] = "thesis"
     extra: tuple[Extra, ...] = ()  # of EXTRA, observed too
     state_scale: Positive = 10.0  # of the observation [1/m]
@@ -77,7 +77,6 @@ class SawyerPush:
     damping: NotNegative = 0.02  # of the least squares, for [m] and [rad]
 
     def __post_init__(self) -> None:
-        check(self.physics)
         object.__setattr__(self, "extra", tuple(name for name in EXTRA if name in self.extra))
 
     @property
@@ -212,8 +211,8 @@ class SawyerPush:
         parts = (self.state_scale * reach, self.state_scale * left)
         obs = jnp.concatenate((*parts, *self._extra(data, tip, info["velocity"])))
         metrics = {"success": success.astype(jnp.float32), "distance": distance}
-        no = jnp.zeros((), bool)
-        return EnvState(data, obs, reward, success & self.terminate, no, metrics, info)
+        ended = success & self.terminate
+        return EnvState(data, obs, reward, ended, metrics=metrics, info=info)
 
 
 def _disc(key: Array) -> Array:

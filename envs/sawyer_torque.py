@@ -27,7 +27,7 @@ from jax import Array
 from hybrid_rl.envs import sawyer_reference, sensor_noise
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.kinematics import Chain
-from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
+from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, Simulator
 from hybrid_rl.envs.sawyer_reference import ASSET, NEUTRAL, SITE
 from hybrid_rl.fields import Count, Natural, NotNegative, part
 from hybrid_rl.types import EnvState, Spec
@@ -48,7 +48,7 @@ TIP = Chain(ASSET, SITE)
 class SawyerTorque:
     """Sawyer with torques as actions; `physics` is native, mjx, warp or auto."""
 
-    physics: str = "auto"
+    physics: Simulator = "auto"
     damping: Literal["none", "maker"] = "none"  # of the joints
     payload: NotNegative = 0.0  # [kg] added to the rod
     learn: Natural = 2000  # decisions before the reference leaves the neutral pose
@@ -57,9 +57,6 @@ class SawyerTorque:
     sensor_noise: NotNegative = 0.0  # [rad/s] standard deviation, on q'
 
     spec = Spec(obs=42, act=7, dt=DT)
-
-    def __post_init__(self) -> None:
-        check(self.physics)
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""
@@ -117,8 +114,7 @@ class SawyerTorque:
         error = jnp.linalg.norm(TIP.pose(data.qpos)[0] - now[14:])
         obs = jnp.concatenate((data.qpos, data.qvel, now[:14], later[:14]))
         metrics = {"tip_error": error, "joint_rate": jnp.abs(data.qvel).max()}
-        no = jnp.zeros((), bool)
-        return EnvState(data, obs, -100 * error**2, no, no, metrics, {"count": count})
+        return EnvState(data, obs, -100 * error**2, metrics=metrics, info={"count": count})
 
 
 def asset(damping: str, payload: float = 0.0) -> str:

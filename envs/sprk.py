@@ -32,7 +32,7 @@ from hybrid_rl.envs.analytic.contact_plane import THREE, ContactPlane
 from hybrid_rl.envs.analytic.point_mass import DT, move
 from hybrid_rl.envs.mujoco import mjcf, rounded_boxes
 from hybrid_rl.envs.mujoco.kinematics import turned
-from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
+from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, Simulator
 from hybrid_rl.fields import Discount, NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
 
@@ -52,7 +52,7 @@ PLANE = (  # fields that contact_plane has, too
 class Sprk:
     """A ball among objects; `physics` is native, mjx, warp or auto."""
 
-    physics: str = "auto"
+    physics: Simulator = "auto"
     objects: tuple[tuple[float, ...], ...] = THREE
     acceleration: Positive = 1.0  # [m/s^2] a
     drag: NotNegative = 0.0  # [1/s] b
@@ -72,7 +72,6 @@ class Sprk:
     spec = Spec(obs=4, act=2, dt=DT)
 
     def __post_init__(self) -> None:
-        check(self.physics)
         for name in PLANE:
             object.__setattr__(self, name, getattr(self._plane, name))
 
@@ -155,10 +154,9 @@ class Sprk:
         pose = info["pose"]
         p = turned(data.qpos[:2] - self._plane.middle, pose[2]) + pose[:2]
         obs = jnp.concatenate([p, turned(data.qvel[:2], pose[2])])
-        no = jnp.zeros((), bool)
         x, y, angle = pose
         metrics = {"touch": touch, "pose_x": x, "pose_y": y, "pose_angle": angle}
-        return EnvState(data, obs, measured, no, no, metrics, info)
+        return EnvState(data, obs, measured, metrics=metrics, info=info)
 
     def distance(self, s: Array, pose: Array | None = None) -> Array:
         """Signed distance [] [m] of s [2] to the nearest surface; `pose` [3] is theta."""

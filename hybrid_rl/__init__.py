@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from hybrid_rl import fields, protocols, types
     from hybrid_rl.analysis import style
     from hybrid_rl.analysis.curves import Curve, curves
-    from hybrid_rl.analysis.dataframes import metrics
+    from hybrid_rl.analysis.tables import metrics
     from hybrid_rl.api import load, make
     from hybrid_rl.cli import arguments, command
     from hybrid_rl.core import (
@@ -122,7 +122,7 @@ _PUBLIC = {  # name -> its module, or MODULE:NAME; train and evaluate can be cal
     "lifting": "core.lifting",
     "load": "api:load",
     "make": "api:make",
-    "metrics": "analysis.dataframes:metrics",
+    "metrics": "analysis.tables:metrics",
     "part": "fields:part",
     "protocols": "protocols",
     "retargeted": "run.retarget:retargeted",

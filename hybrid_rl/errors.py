@@ -79,20 +79,6 @@ class SourceOf:
         except TypeError:
             return ""
 
-    def takes(self, method: str, *names: str) -> None:
-        """Raise `error` unless there is such a method, which takes so many arguments."""
-        form = f"{method}({', '.join(('self', *names))})"
-        bound = getattr(self.object, method, None)
-        if not callable(bound):
-            raise self.error(f"{self.at()} has no {method}; write def {form}")
-        try:
-            inspect.signature(bound).bind(*names)
-        except TypeError:
-            has = inspect.signature(bound)
-            raise self.error(f"{self.at(method)}{has}: must be {form}") from None
-        except ValueError:  # of a built-in function, which says nothing
-            pass
-
     def blamed(self, method: str, call: Callable[..., Any], *arguments: Any) -> Any:
         """The result of `call`; what goes wrong in it is the line of the user's that caused it."""
         try:

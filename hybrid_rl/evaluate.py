@@ -65,7 +65,6 @@ from hybrid_rl.run.evaluations import finish_episodes
 from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.folder import members
 from hybrid_rl.run.logs.progress import say
-from hybrid_rl.run.machine import memory
 from hybrid_rl.run.retarget import load_changed
 from hybrid_rl.run.saved import Trained
 from hybrid_rl.training.rollout import advance, begin, evaluation_keys
@@ -95,10 +94,9 @@ def evaluate(
     of decisions that every episode has made.
 
     Raises:
-        UsageError: for a mode that the method does not have, or episodes that do not fit.
+        UsageError: for a mode that the method does not have.
     """
-    _check(trained, mode, episodes)
-    episode, controller = trained.episode, trained.controllers[mode]
+    episode, (controller, _) = trained.episode, trained.learner(mode=mode, world=True)
     keys = jnp.stack([evaluation_keys(seed, episodes) for seed in trained.seeds])
     if isinstance(episode.env, External):
         decisions = count()
@@ -110,12 +108,6 @@ def evaluate(
     more = jax.vmap(partial(advance, episode, controller), (0, 0, None))
     more = partial(jax.jit(more, donate_argnums=1), trained.params)
     return finish_episodes(first(keys), more, episode.steps, on_decisions) or {}
-
-
-def _check(trained: Trained, mode: str, episodes: int) -> None:
-    """Raise UsageError as `evaluate`."""
-    controller, _ = trained.learner(mode=mode, world=True)
-    memory.episodes("episodes", episodes, len(trained.seeds), trained.episode, [controller])
 
 
 def report(trained: Trained, mode: str, got: dict[str, np.ndarray]) -> dict[str, Any]:
@@ -160,7 +152,7 @@ def _evaluated(given: dict[str, Any], changes: dict[str, str]) -> None:
             changes = {**changes, "precision": now}
     for note in trained.notes:
         print(note)
-    _check(trained, given["mode"], episodes)  # before anything is compiled
+    trained.learner(mode=given["mode"], world=True)  # before anything is compiled
     say(f"compiling, then {each} ...")  # of a planner, a minute
     got = evaluate(trained, given["mode"], episodes, _saying(trained.episode.steps))
     values = report(trained, given["mode"], got)

@@ -14,17 +14,21 @@ In a field of floats whole numbers become floats, so that all values give arrays
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, fields, is_dataclass
+from numbers import Real
 from types import NoneType, UnionType
 from typing import (
     Annotated,
     Any,
     Literal,
+    NoReturn,
     Self,
+    SupportsIndex,
     TypeVar,
     Union,
     dataclass_transform,
     get_args,
     get_origin,
+    get_type_hints,
 )
 
 import numpy as np
@@ -73,11 +77,12 @@ def among(*values: float) -> Must:
     return Must(lambda x: x in values, f"be {' or '.join(map(str, values))}", of=values)
 
 
+Fail = Callable[..., NoReturn]  # the words of what is wrong, and the method that is missing
 NO_PART = bool | int | float | str | list | tuple | Mapping
 
 
 def _whole(value: Any) -> bool:
-    return hasattr(value, "__index__") and not isinstance(value, bool)
+    return isinstance(value, SupportsIndex) and not isinstance(value, bool)
 
 
 def _listed(value: Any) -> bool:
@@ -109,16 +114,22 @@ def part(cls: Class) -> Class:
 
     Creating one raises FieldError, a ValueError, if a field is out of its range.
     """
-    own: Any = cls.__dict__.get("__post_init__")
+    own = cls.__dict__.get("__post_init__")
+    inherited = getattr(cls, "__post_init__", None)
 
     def checked(self: Any) -> None:
-        _check(self)
+        for field in fields(self):
+            object.__setattr__(self, field.name, check(self, field.name, field.type))
         if own is not None:
             own(self)
 
-    if own is not None or not hasattr(cls, "__post_init__"):
+    if own is not None or inherited is None:
         cls.__post_init__ = checked
-    return dataclass(frozen=True)(cls)
+    made = dataclass(frozen=True)(cls)
+    hints = get_type_hints(made, include_extras=True)
+    for field in fields(made):  # a word, where a module postpones its annotations
+        field.type = hints[field.name]
+    return made
 
 
 def plain(kind: Any) -> Any:
@@ -131,95 +142,80 @@ def choices(kind: Any) -> tuple[Any, ...]:
     return get_args(kind) if get_origin(kind) in (Union, UnionType) else (kind,)
 
 
-def _check(self: Any) -> None:
-    """Make tuples, and raise FieldError for a field that is out of its range."""
-    for field in fields(self):
-        if isinstance(field.type, str):
-            where = f"{type(self).__name__}.{field.name}"
-            words = "@part reads types; remove `from __future__ import annotations`"
-            raise TypeError(f"{where}: {words}")
-        kinds = [kind for kind in choices(field.type) if kind is not NoneType]
-        value = getattr(self, field.name)
-        if value is None and len(kinds) < len(choices(field.type)):
-            continue
-        for kind in kinds:
-            if get_origin(plain(kind)) is tuple:
-                if not _listed(value) and len(kinds) > 1:
-                    continue  # has the rule of a number
-                value = _tuples(plain(kind), value)
-                object.__setattr__(self, field.name, value)
-            elif isinstance(value, tuple) and len(kinds) > 1:
-                continue  # has the rule of its entries
-            null = ", or null" if len(kinds) < len(choices(field.type)) else ""
-            check(self, field.name, kind, null)
-            value = _number(kind, value)
-            object.__setattr__(self, field.name, value)
-
-
 def method_of(kind: Any) -> str:
     """The method that a value of this type must have; empty: none."""
     return get_args(kind)[1].has if get_origin(kind) is Annotated else ""
 
 
-def check(part: Any, name: str, kind: Any, null: str = "") -> None:
-    """Raise FieldError if the value of a field breaks the rule of an annotated type."""
-    if wrong := _wrong(kind, getattr(part, name)):
-        missing = method_of(kind)
-        raise FieldError(part, name, wrong if missing else wrong + null, missing)
+def check(part: object, name: str, kind: Any) -> Any:
+    """The value of a field as its type has it: tuples for lists, floats for whole numbers.
+
+    Raises:
+        FieldError: if it breaks the rule of the type.
+    """
+    null = ", or null" if NoneType in choices(kind) else ""
+
+    def fail(words: str, lacks: str = "") -> NoReturn:
+        raise FieldError(part, name, words if lacks else words + null, lacks)
+
+    return _fitted(kind, getattr(part, name), fail)
 
 
-def _wrong(kind: Any, value: Any) -> str:
-    """What is wrong with a value of this type, in words; "" if nothing is."""
-    of = get_args(kind)
-    if get_origin(kind) is Annotated:
-        must: Must = of[1]
-        try:
-            holds = bool(must.hold(value)) and not (
-                of[0] in (int, float) and isinstance(value, bool)
-            )
-        except (TypeError, ValueError):  # a word or an array in a list of numbers, say
-            holds = False
-        if holds and of[0] is int and value > LARGEST:
-            return f"must be at most {LARGEST}"
-        wrong = must.words if must.has else f"must {must.words}"
-        return _wrong(of[0], value) if holds else wrong
-    if getattr(kind, "_is_protocol", False):
-        return "must be a part" if isinstance(value, NO_PART) else ""
-    if get_origin(kind) is Literal:
-        return "" if value in of else f"choose one of {', '.join(map(str, of))}"
-    if get_origin(kind) is not tuple:
-        return ""
-    if not isinstance(value, tuple):
-        return "must be a list"
-    each = of[:1] * len(value) if of[-1] is Ellipsis else of
-    if len(each) != len(value):
-        return f"must have {len(each)} entries"
-    wrong = next(filter(None, map(_wrong_entry, each, value)), "")
-    return "must be a list of lists" if wrong == "must be a list" else wrong
+def _fitted(kind: Any, value: Any, fail: Fail, entry: bool = False) -> Any:
+    """A value as this type has it; entry: of a list, whose numbers are finite."""
+    kinds = [each for each in choices(kind) if each is not NoneType]
+    if value is None and len(kinds) < len(choices(kind)):
+        return None
+    if len(kinds) > 1:  # a list has the rules of lists, another value the others
+        lists = _listed(value)
+        kinds = [each for each in kinds if (get_origin(plain(each)) is tuple) == lists] or kinds
+    for kind in kinds:
+        origin, of = get_origin(kind), get_args(kind)
+        if origin is Annotated:
+            value = _fitted(of[0], value, fail)
+            _obey(of[1], value, fail, of[0] in (int, float))
+        elif origin is Literal:
+            if value not in of:
+                fail(f"choose one of {', '.join(map(str, of))}")
+        elif origin is tuple:
+            value = _row(of, value, fail)
+        elif getattr(kind, "_is_protocol", False):
+            if isinstance(value, NO_PART):
+                fail("must be a part")
+        elif entry and kind is int and not _whole(value):
+            fail("must hold whole numbers")
+        elif kind is float:
+            if entry and not (isinstance(value, Real) and math.isfinite(value)):
+                fail("must hold finite numbers")
+            value = float(value) if type(value) is int else value
+    return value
 
 
-def _wrong_entry(kind: Any, value: Any) -> str:
-    """What is wrong with an entry of a list; one without a rule of its own is a number."""
-    if kind is int:
-        return "" if _whole(value) else "must hold whole numbers"
-    if kind is float:
-        kind = Annotated[float, Must(math.isfinite, "hold finite numbers")]
-    return _wrong(kind, value)
+def _obey(must: Must, value: Any, fail: Fail, number: bool) -> None:
+    """Fail for a value that breaks a rule; number: of a number, which is not too large."""
+    try:
+        holds = bool(must.hold(value)) and not (number and isinstance(value, bool))
+    except (TypeError, ValueError):  # a word or an array in a list of numbers, say
+        holds = False
+    if not holds:
+        fail(must.words if must.has else f"must {must.words}", must.has)
+    if isinstance(value, int) and value > LARGEST:
+        fail(f"must be at most {LARGEST}")
 
 
-def _tuples(kind: Any, value: Any) -> Any:
-    """A value of this type with tuples for its lists and arrays."""
-    if get_origin(kind) is not tuple or not _listed(value):
-        return value
-    return tuple(_tuples(get_args(kind)[0], each) for each in value)
+def _row(of: tuple[Any, ...], value: Any, fail: Fail) -> tuple[Any, ...]:
+    """A list as a tuple; of: the types of its entries, or one of all and an Ellipsis."""
+    if not _listed(value):
+        fail("must be a list")
+    entries = tuple(value)
+    kinds = of[:1] * len(entries) if of[-1] is Ellipsis else of
+    if len(kinds) != len(entries):
+        fail(f"must have {len(kinds)} entries")
 
+    def inner(words: str, lacks: str = "") -> NoReturn:
+        fail("must be a list of lists" if words == "must be a list" else words, lacks)
 
-def _number(kind: Any, value: Any) -> Any:
-    """A value of this type, with floats for whole numbers where the type has floats."""
-    of = plain(kind)
-    if get_origin(of) is tuple and isinstance(value, tuple):
-        return tuple(_number(get_args(of)[0], each) for each in value)
-    return float(value) if of is float and type(value) is int else value
+    return tuple(_fitted(k, x, inner, True) for k, x in zip(kinds, entries, strict=True))
 
 
 def as_yaml(value: Any) -> Any:

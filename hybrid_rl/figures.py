@@ -28,14 +28,14 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
+from hybrid_rl.analysis.results import redrawn
 from hybrid_rl.analysis.style import STYLE
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import HELP, Argument, output, read
 from hybrid_rl.errors import UsageError, user_line
 from hybrid_rl.files.atomic import replacing
 from hybrid_rl.run.files.integrity import write_text
-from hybrid_rl.run.files.reading import json_file
-from hybrid_rl.run.logs.records import arrays, json_value
+from hybrid_rl.run.logs.records import json_value
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.settings.build import load
 from hybrid_rl.settings.complete import nearest
@@ -161,18 +161,6 @@ def _content(file: Path) -> Any:
         return None
 
 
-def redrawn(study: Study, file: str) -> tuple["Figure", dict[str, Any]]:
-    """The picture of a JSON, and its content."""
-    try:
-        content = json_file(Path(file))
-        with _styled():
-            return study.draw(arrays(content)), content
-    except UsageError as error:
-        raise UsageError(f"from={error}") from error
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
-        raise UsageError(f"from={file}: has no numbers of this study") from error
-
-
 def _listing(known: dict[str, str]) -> str:
     """The studies as text, one line each."""
     width = max(map(len, known))
@@ -196,7 +184,9 @@ def main() -> None:
     if again and any(text.startswith("from=") for text in line):
         values, _ = read(doc, (*of_all, FROM))
         out = output("out", values["out"], SUFFIXES, ".json")
-        save(*redrawn(study, values["from"]), out)
+        with _styled():
+            picture, numbers = redrawn(values["from"], "from", study.draw)
+        save(picture, numbers, out)
         print(out)
         return
     values, _ = read(doc, (*of_all, *(FROM,) * again, *arguments(study)))

@@ -186,9 +186,9 @@ def _training(
     folder: Path, seed: int | None, steps: int, out: Path, width: int, height: int
 ) -> None:
     """Draw the first episode of training, with the belief at the right."""
-    from hybrid_rl.analysis.belief.video import MOST, film
     from hybrid_rl.analysis.drawing import draw
     from hybrid_rl.envs.mujoco.scenery import check_drawable, scene_of
+    from hybrid_rl.thesis.studies.belief_video import MOST, film
 
     shown = film(folder, seed, steps, height, MOST[out.suffix])
     check_drawable(shown.world)

@@ -21,12 +21,11 @@ if __name__ == "__main__":
 
     interrupt.install()
 
-import inspect
 import signal
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, TypedDict, Unpack
 
 import numpy as np
 from hydra.core.hydra_config import HydraConfig
@@ -35,7 +34,8 @@ from omegaconf import DictConfig
 from hybrid_rl import api
 from hybrid_rl.cli import command, hydra_line, interrupt
 from hybrid_rl.errors import DivergenceError, UsageError
-from hybrid_rl.run import assembled, divergence, folder, launch, together
+from hybrid_rl.run import assembled, divergence, folder, launch, members
+from hybrid_rl.run.job import Output
 from hybrid_rl.run.logs import curve
 from hybrid_rl.run.logs.progress import say
 from hybrid_rl.settings import words as overrides
@@ -53,7 +53,7 @@ CURVE = 3  # evaluations
 
 
 class Result(dict[str, Any]):
-    """What summary.json holds; its folder, its curves and its learners."""
+    """The contents of summary.json, with the run's folder, its curves and its learners."""
 
     def __init__(self, summary: Mapping[str, Any], run: Run | None = None) -> None:
         super().__init__(summary)
@@ -80,42 +80,27 @@ class Result(dict[str, Any]):
         return trained.of(self._run, self.folder)
 
 
-@overload
-def train(
-    method: Sequence[str] | DictConfig = (),
-    *,
-    given: Mapping[str, str] = launch.NOTHING,
-    config_dir: str | Path | None = None,
-    on_row: OnRow | None = None,
-    progress: bool = True,
-) -> Result: ...
+class OfAgent(TypedDict, total=False):
+    """Settings of a run of an agent; run.assembled says what a key that is left out means."""
 
-
-@overload
-def train(
-    method: Agent,
-    *,
-    total_steps: int,
-    seed: int = 0,
-    num_seeds: int = 1,
-    run_dir: str | Path | None = None,
-    name: str | None = None,
-    log_every: int | None = None,
-    eval_every: int | None = None,
-    eval_episodes: int = 10,
-    checkpoint_every: int | None = None,
-    on_row: OnRow | None = None,
-    progress: bool = True,
-) -> Result: ...
+    total_steps: int
+    seed: int
+    num_seeds: int
+    run_dir: str | Path | None
+    name: str | None
+    log_every: int | None
+    eval_every: int | None
+    eval_episodes: int
+    checkpoint_every: int | None
 
 
 def train(
     method: Sequence[str] | DictConfig | Agent = (),
     *,
-    given: Mapping[str, str] = launch.NOTHING,
+    config_dir: str | Path | None = None,
     on_row: OnRow | None = None,
     progress: bool = True,
-    **settings: Any,
+    **settings: Unpack[OfAgent],
 ) -> Result:
     """Train `method` to its end; returns what summary.json holds.
 
@@ -128,13 +113,12 @@ def train(
     Args:
         method: what follows the command, as a list; a configuration of `compose`; or an agent,
             which continues where run_dir holds its checkpoints.
-        given: the overrides of the user, key -> value, for a configuration with `resume`.
+        config_dir: of a list, a folder as for `--config-dir`.
         on_row: called with each new row of metrics.jsonl, a dictionary. Once it returns False, or
             raises, the run ends with a checkpoint, and "finished" of the result is False.
         progress: False prints nothing.
-        settings: of a list alone, config_dir, a folder as for `--config-dir`; of an agent alone
-            (hybrid_rl.run.assembled.run_of): total_steps, seed, num_seeds, run_dir, name,
-            log_every, eval_every, eval_episodes, checkpoint_every.
+        settings: of an agent alone (hybrid_rl.run.assembled.run_of): total_steps, seed, num_seeds,
+            run_dir, name, log_every, eval_every, eval_episodes, checkpoint_every.
 
     Raises:
         KeyboardInterrupt: after Ctrl-C and a checkpoint.
@@ -142,13 +126,17 @@ def train(
         DivergenceError: if every learner reached NaN or infinity.
         CheckpointError: if a checkpoint could not be written or read.
     """
-    output = launch.Output.of(on_row, progress)
+    output = Output(on_row, progress)
     if isinstance(method, Agent):
-        run = _run_of(method, settings)
-        go = launch.begin if run.config.resume is None else launch.proceed
-        result = Result(go(run, interrupt.as_call, output), run)
+        values: dict[str, Any] = {**settings}
+        run = assembled.run_of(method, **values)
+        result = Result(launch.train_built(run, interrupt.as_call, output), run)
     else:
-        runs, given = _composed(method, given, **settings)
+        if settings:
+            texts = ", ".join(f'"{key}={value}"' for key, value in settings.items())
+            raise UsageError(f"train: keywords are for an agent; write train([{texts}, ...])")
+        given = {} if isinstance(method, DictConfig) else overrides.typed_values(method)
+        runs = members.load(method, config_dir)
         result = Result(launch.train(runs, given, interrupt.as_call, output))
     if result["signal"] is not None:
         signal.raise_signal(result["signal"])
@@ -156,38 +144,11 @@ def train(
     return result
 
 
-def _composed(
-    method: Sequence[str] | DictConfig,
-    given: Mapping[str, str],
-    config_dir: str | Path | None = None,
-    **others: Any,
-) -> tuple[list[together.Member], Mapping[str, str]]:
-    """The runs of a list or a configuration, and the user's overrides."""
-    if others:
-        texts = ", ".join(f'"{key}={value}"' for key, value in others.items())
-        raise UsageError(f"train: keywords are for an agent; write train([{texts}, ...])")
-    if not isinstance(method, DictConfig):
-        given = overrides.typed_values(method)
-    elif config_dir:
-        raise UsageError("train: config_dir goes with a list of overrides, not a DictConfig")
-    return together.load(method, config_dir), given
-
-
-def _run_of(agent: Agent, settings: dict[str, Any]) -> Run:
-    """The run of an agent; UsageError for another keyword, or one that is missing."""
-    try:
-        inspect.signature(assembled.run_of).bind(agent, **settings)
-    except TypeError as error:
-        raise UsageError(f"train(agent, ...): {error}") from error
-    return assembled.run_of(agent, **settings)
-
-
 def _job(config: DictConfig, on_row: OnRow | None = None) -> dict[str, Any]:
     """One run of the command; returns what summary.json holds. on_row: as of `train`."""
     typed = overrides.of_job(HydraConfig.get())
-    members = together.expand_sweep(config, typed)
-    output = launch.Output.of(on_row)
-    summary = launch.train(members, overrides.typed_values(typed), interrupt.as_call, output)
+    runs, output = members.expand_sweep(config, typed), Output(on_row)
+    summary = launch.train(runs, overrides.typed_values(typed), interrupt.as_call, output)
     output.raise_problem()
     if summary["signal"] is None:
         _curve(Path(summary["run_dir"]))

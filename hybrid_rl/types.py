@@ -20,6 +20,7 @@ from collections.abc import Callable
 from dataclasses import field
 from typing import Any, NamedTuple
 
+import jax.numpy as jnp
 from flax import struct
 from jax import Array
 
@@ -46,11 +47,15 @@ class Clock(NamedTuple):
 
     decision: Array  # [] int32
     total: Array  # [] the return: rewards without discount, and without a constraint's price
-    violations: Any = None  # [] of the constraint
-    late: Any = None  # [delay, m] actions that are to arrive
-    true_obs: Any = None  # [o] the observation before noise
-    sensing: Any = None  # data of the key of the next noise of the sensors
-    disturbing: Any = None  # data of the key of the next noise of an action
+    violations: Array | None = None  # [] of the constraint
+    late: Array | None = None  # [delay, m] actions that are to arrive
+    true_obs: Array | None = None  # [o] the observation before noise
+    sensing: Array | None = None  # data of the key of the next noise of the sensors
+    disturbing: Array | None = None  # data of the key of the next noise of an action
+
+
+def _no() -> Array:
+    return jnp.zeros((), bool)
 
 
 @struct.dataclass
@@ -60,8 +65,8 @@ class EnvState:
     data: PyTree  # the physical state
     obs: Array  # [o]
     reward: Array  # []
-    terminated: Array  # [] bool: the task ended, no reward follows
-    truncated: Array  # [] bool: only the time limit ended the episode
+    terminated: Array = field(default_factory=_no)  # [] bool: the task ended, no reward follows
+    truncated: Array = field(default_factory=_no)  # [] bool: only the time limit ended the episode
     metrics: dict[str, Array] = field(default_factory=dict)  # name -> [], logged; or success
     info: dict[str, Array] = field(default_factory=dict)  # the task's own memory
     clock: Any = None  # the Clock of the episode; None: of a world alone

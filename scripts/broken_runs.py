@@ -25,7 +25,7 @@ HERE = Path(__file__).parent / "broken"  # the user's files: a world, and its ta
 ARGUMENTS = (
     Argument("folder", "runs/broken", "of the runs"),
     Argument("seed", 6, "of each run", whole(0)),
-    Argument("runs", "all", "which: all, or some of broken, audited, invented, sound"),
+    Argument("runs", "all", "which: all, or some of broken, audited, invented, sound, robots"),
     Argument("out", "", "JSON with the lines on each run; empty: printed alone"),
 )
 SMALL = "settings=light total_steps=3000 random_steps=500 eval_every=1500 eval_episodes=3"
@@ -53,6 +53,16 @@ SOUND = {  # name -> its task and method
     "cartpole, sac": "task=cartpole algo=sac",
     "lander, sac": "task=lander algo=sac",
     "half-cheetah, sac": "task=halfcheetah algo=sac",
+    "half-cheetah, hybrid_stochastic": "task=halfcheetah algo=hybrid_stochastic",
+    "hopper, sac": "task=hopper algo=sac",
+    "hopper, hybrid_stochastic": "task=hopper algo=hybrid_stochastic",
+    "walker2d, sac": "task=walker2d algo=sac",
+    "quadcopter_se3, sac": "task=quadcopter_se3 algo=sac",
+    "cart_pendulum, sac": "task=cart_pendulum algo=sac",
+}
+ROBOTS = {  # for the audited faults
+    "half-cheetah": "halfcheetah.HalfCheetah 'env.velocities=[8,9,10,11,12,13,14,15,16]'",
+    "hopper": "hopper.Hopper 'env.velocities=[5,6,7,8,9,10]'",
 }
 
 
@@ -61,6 +71,12 @@ KINDS = {
     "audited": {name: f"task=faulty algo=sac 'env.kind={name}'" for name in AUDITED},
     "invented": {name: f"task=faulty algo=sac 'env.kind={name}'" for name in INVENTED},
     "sound": SOUND,
+    "robots": {
+        f"{robot}, {name}": f"task=faulty algo=sac 'env.kind={name}' env.of=hybrid_rl.envs.{world}"
+        " 'env.own={physics: native}' env.steps=1000 episode.steps=1000"
+        for robot, world in ROBOTS.items()
+        for name in AUDITED
+    },
 }
 
 

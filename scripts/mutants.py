@@ -147,8 +147,8 @@ MUTANTS = {
     ),
     f"a {SENTENCE} on a page": Mutant(
         "docs/results/chapter5.md",
-        "the printed step is as good as ours",
-        "the printed step does as well as ours",
+        "is as good as ours if R",
+        "does as well as ours if R",
         "",
     ),
 }

@@ -24,10 +24,10 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.analysis.recorded import read as recorded
 from hybrid_rl.cli.arguments import Argument, number, read, whole
 from hybrid_rl.envs.adapters.stand_in import Cartpole
 from hybrid_rl.outside.row_log import RowLog
+from hybrid_rl.thesis.studies.recorded import read as recorded
 from hybrid_rl.types import Spec
 
 ARGUMENTS = (

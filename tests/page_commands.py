@@ -17,7 +17,7 @@ from omegaconf import DictConfig
 from hybrid_rl import figures
 from hybrid_rl.cli.arguments import HELP, Argument
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run import together
+from hybrid_rl.run import members
 from hybrid_rl.settings.build import CONF
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -109,7 +109,7 @@ def compose(pages: list[str]) -> None:
 @cache
 def composed(job: tuple[str, ...]) -> DictConfig:
     """The configuration of a job."""
-    return together.load([*job])[0].config
+    return members.load([*job])[0].config
 
 
 def check_arguments(page: str) -> None:

@@ -2,6 +2,7 @@
 
 import math
 import shutil
+from contextlib import contextmanager
 from types import SimpleNamespace
 
 import chromium
@@ -21,6 +22,7 @@ from scripts.browser.javascript import Program
 LARGEST = 6_000_000  # bytes of all that the page loads
 EXACT = 5  # decisions, before contacts multiply the last digit
 EPISODES = 8
+STYLE = "document.querySelector('.robots').style.display"
 PAGE = """<!DOCTYPE html><html lang="en"><meta charset="utf-8"><link rel="icon" href="data:,">
 <body><div class="robots" style="width: 320px"><img alt="" src="data:,"></div>
 <style>.robots-stage { aspect-ratio: 16 / 9 }</style><script src="start.js"></script></html>"""
@@ -43,16 +45,27 @@ def browser(tmp_path_factory):
     if not chromium.PROGRAM:
         pytest.skip("needs Chromium")
     with chromium.opened(tmp_path_factory.mktemp("profile")) as page:
+        page.size(800, 600)
         yield page
 
 
 @pytest.fixture(scope="module")
 def page(site, browser):
-    """The page, after the click that loads the robots."""
+    """The page, after the click that loads the robots; they are drawn only where a test asks."""
     browser.open((site / "index.html").as_uri())
     browser.run("document.querySelector('.robots-start').click()")
     browser.wait("window.robots")
+    browser.run(f"{STYLE} = 'none'")
     return browser
+
+
+@contextmanager
+def drawn(page, name):
+    """A robot is drawn until the block ends: without a GPU this takes every core."""
+    page.run(f"{STYLE} = ''")
+    page.run(f"robots.show({name!r})")
+    yield
+    page.run(f"{STYLE} = 'none'")
 
 
 def test_the_built_scripts_are_those_of_the_sources_and_small(site):
@@ -101,18 +114,18 @@ def episodes(episode: Episode, controller, params) -> tuple[Array, Array, Array]
 
 
 def test_a_robot_runs_is_pulled_and_does_not_fall(page):
-    page.run("robots.show('halfcheetah')")
-    page.wait("robots.stats.time > 3")
-    before = page.run("robots.stats")
-    assert before["x"] > 5
-    assert before["falls"] == 0
-    page.run("robots.pause(true)")  # so that it stays under the mouse
-    x, y = page.run("(p => [p.x, p.y])(robots.picture.window(robots.picture.root))")
-    page.mouse("mousePressed", x, y)
-    page.mouse("mouseMoved", x + 30, y - 10)
-    page.run("robots.pause(false)")
-    page.wait(f"robots.stats.decisions > {before['decisions'] + 20}")
-    page.mouse("mouseReleased", x + 30, y - 10)
+    with drawn(page, "halfcheetah"):
+        page.wait("robots.stats.time > 3")
+        before = page.run("robots.stats")
+        assert before["x"] > 5
+        assert before["falls"] == 0
+        page.run("robots.pause(true)")  # so that it stays under the mouse
+        x, y = page.run("(p => [p.x, p.y])(robots.picture.window(robots.picture.root))")
+        page.mouse("mousePressed", x, y)
+        page.mouse("mouseMoved", x + 30, y - 10)
+        page.run("robots.pause(false)")
+        page.wait(f"robots.stats.decisions > {before['decisions'] + 20}")
+        page.mouse("mouseReleased", x + 30, y - 10)
     after = page.run("robots.stats")
     assert after["pushes"] >= 10
     assert after["x"] > before["x"]
@@ -123,16 +136,16 @@ def test_a_robot_runs_is_pulled_and_does_not_fall(page):
 
 def test_a_robot_that_falls_often_stays_in_the_picture(page):
     """The camera's height follows from the robot's, however it came there."""
-    page.run("robots.show('hopper')")
-    seen = page.run("""(() => {
-        robots.pause(true);
-        const { picture, after: [x, z, ...joints] } = robots;
-        for (let fall = 0; fall < 10; fall++)
-            for (const height of [0, -0.3, -0.6, -0.9, -1.1, 0])
-                picture.pose([x, z + height, ...joints]);
-        const { x: left, y: top } = picture.window(picture.root);
-        const box = picture.canvas.getBoundingClientRect();
-        return [(left - box.left) / box.width, (top - box.top) / box.height]; })()""")
+    with drawn(page, "hopper"):
+        seen = page.run("""(() => {
+            robots.pause(true);
+            const { picture, after: [x, z, ...joints] } = robots;
+            for (let fall = 0; fall < 10; fall++)
+                for (const height of [0, -0.3, -0.6, -0.9, -1.1, 0])
+                    picture.pose([x, z + height, ...joints]);
+            const { x: left, y: top } = picture.window(picture.root);
+            const box = picture.canvas.getBoundingClientRect();
+            return [(left - box.left) / box.width, (top - box.top) / box.height]; })()""")
     assert np.all((np.array(seen) > 0.2) & (np.array(seen) < 0.8))
 
 

@@ -20,7 +20,7 @@ from hybrid_rl.outside.row_log import RowLog
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.files.lock import lock
 from hybrid_rl.run.logs.log import RunLog
-from hybrid_rl.run.logs.loggers import CSV, WandB
+from hybrid_rl.run.logs.loggers import CSV, Begun, WandB
 from hybrid_rl.run.logs.tensorboard import TensorBoard
 from hybrid_rl.types import Spec
 
@@ -43,7 +43,7 @@ OPENED = {  # in what writes to run folders; the folder of a run itself is the u
         "path.open('rb')",
         "draft.open('x', encoding='utf-8')",  # of `replacing`
     },
-    "run/files/lock.py": {"path.parent.mkdir(parents=True, exist_ok=True)"},
+    "run/files/lock.py": {"folder.mkdir(parents=True, exist_ok=True)"},
     "run/folder.py": {"folder.mkdir(parents=True)"},
     "run/machine/jax_settings.py": {"cache.mkdir(parents=True, exist_ok=True)"},
     "run/logs/progress.py": {"os.open(os.devnull, os.O_WRONLY)"},
@@ -106,9 +106,7 @@ def process(run: Path) -> RobotProcess:
 
 
 def tensorboard(run: Path) -> None:
-    log = TensorBoard(run, [0, 1], lambda: None)
-    log.write(ROW)
-    log.close()
+    TensorBoard(Begun(run, [0, 1], {})).close()
 
 
 WRITE = {  # what would be written, by the file or the folder that is a link
@@ -121,12 +119,12 @@ WRITE = {  # what would be written, by the file or the folder that is a link
     "robot/stop": lambda run: open_own(run / "robot" / "stop").close(),
     "robot": lambda run: own_folder(run / "robot"),
     "lock": lambda run: lock(run, "run_dir").__enter__(),
-    "metrics.jsonl": lambda run: RunLog(run, [0], []).__enter__(),
-    "metrics.csv": lambda run: RunLog(run, [0], [CSV(run)]).__enter__(),
+    "metrics.jsonl": lambda run: RunLog(run, [0]).__enter__(),
+    "metrics.csv": lambda run: CSV(Begun(run, [0], {})),
     "tensorboard": tensorboard,
     "tensorboard/seed_0": tensorboard,
-    "wandb": lambda run: WandB(run, [0], {})._id(0),
-    "wandb/seed_0.id": lambda run: WandB(run, [0], {})._id(0),
+    "wandb": lambda run: WandB(Begun(run, [0], {})).id_of(0),
+    "wandb/seed_0.id": lambda run: WandB(Begun(run, [0], {})).id_of(0),
     "checkpoints": lambda run: checkpoint.save(run / "checkpoints", 5, {"a": np.ones(1)}, {}),
     "study.db": lambda run: refuse_link(run / "study.db"),
 }

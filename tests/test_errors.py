@@ -65,7 +65,7 @@ USAGE = [  # overrides of train, words of the line
     ("experiment=thesis/fig_33", "`python -m hybrid_rl.list`; nearest: thesis/fig_3_3; "),
     ("task=gymnasium algo=mppi", "Pendulum-v1: mppi plans on the true dynamics, and this task st"),
     ("task=Hopper-v5", "walker2d; did you mean task=gymnasium env.id=Hopper-v5?"),
-    ("task=gymnasium env.id=lab/A-v0", "lab? One that a module of yours registers is env.id=MOD"),
+    ("task=gymnasium env.id=lab/A-v0", "Have you installed the proper package for lab?"),
     ("task=mine:Env", "walker2d; did you mean task=gymnasium env.make=mine:Env?"),
     (
         "task=gymnasium env.id=Hopper-v5 env.make=mine:Env",
@@ -164,7 +164,7 @@ USAGE = [  # overrides of train, words of the line
     ("++planner.horizn=3", "planner.horizn: hybrid_stochastic has no such key"),
     ("total_steps", "total_steps: has no value; write total_steps=VALUE"),
     ("physics=bullet", "physics=bullet: choose one of auto, native, mjx, warp"),
-    ("task=cartpole physics=warp", "physics='warp' needs"),
+    ("task=cartpole physics=warp", "physics=warp: must have an NVIDIA GPU"),
     *((f"{key}=0", f"{key}=0: {COUNT}") for key in ("total_steps", "planner.samples")),
     ("policy_learner.batch_size=2.5", "policy_learner.batch_size=2.5: must be a whole number"),
     ("num_envs=2.5", f"num_envs=2.5: {COUNT}"),
@@ -243,7 +243,6 @@ USAGE = [  # overrides of train, words of the line
     ("run_dir=", "run_dir=: is empty; give a folder, or leave it out"),
     ("total_steps=2147483648", "total_steps=2147483648: must be at most 2147483647: decisions"),
     ("total_steps=99999999999999999999", "must be at most 2147483647: decisions are counted in"),
-    ("eval_episodes=100000000000", "eval_episodes=100000000000: their worlds would take "),
     ("run_dir=/dev/null/run", "run_dir=/dev/null/run: cannot be written to (Not a directory)"),
 ]
 

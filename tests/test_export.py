@@ -265,11 +265,17 @@ def test_a_state_of_several_types_comes_back():
     [
         ("out=a.pt", "out=a.pt: must end in .stablehlo, .npz, .onnx, .h"),
         ("out=a", "out=a: must end in .stablehlo, .npz, .onnx, .h"),
-        ("mode=full out=a.npz", "mode: the file holds a policy, SamplingController plans; choose"),
-        ("mode=unit out=a.npz", "out: the file holds a multilayer perceptron, this is UnitGauss"),
+        (
+            "mode=full out=a.npz",
+            "a multilayer perceptron of observations, this is SamplingController",
+        ),
+        (
+            "mode=unit out=a.npz",
+            "out: the file holds a multilayer perceptron of observations, this is UnitGauss",
+        ),
         (
             "mode=lifted out=a.npz",
-            "out: the file holds a policy of observations, not of features; ",
+            "of observations, this is a policy of features",
         ),
         (
             "mode=world out=a.stablehlo",
@@ -279,7 +285,6 @@ def test_a_state_of_several_types_comes_back():
         ("seed=5 out=a.npz", "seed=5: the run has 3, 4"),
         ("platforms=gpu out=a.stablehlo", "platforms=gpu: unknown; choose from cpu, cuda"),
         ("out=mine.npz", "out=mine.npz: mine.py would be replaced; choose another name"),
-        ("out=numpy.npz", "out=numpy.npz: numpy.py would hide Python's numpy; choose another name"),
         ("", "out: not given; give out=policy with .stablehlo, .npz, .onnx or .h"),
     ],
 )

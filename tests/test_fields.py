@@ -96,6 +96,14 @@ def test_lists_and_arrays_become_tuples_and_a_part_is_a_frozen_dataclass():
         made.rate = 2.0
 
 
+def test_a_module_may_postpone_its_annotations():
+    code = "from __future__ import annotations\nfrom hybrid_rl.fields import Count, part\n"
+    made: dict = {"__name__": __name__}
+    exec(f"{code}@part\nclass Late:\n    count: Count = 1", made)
+    with pytest.raises(FieldError, match="count=0: must be a whole number, 1 or more"):
+        made["Late"](count=0)
+
+
 def test_a_run_names_the_shortest_key_of_the_field():
     """Also in Python, and for a part inside of another one."""
     for algo, typed in (
@@ -137,7 +145,7 @@ def test_a_run_names_the_shortest_key_of_the_field():
         ("task=two_link algo=kle3_bayesopt", "belief.size=1: must be 2, as of the domain"),
         (
             "algo=sac learner@policy_learner=flash_sac",
-            "critic=EnsembleQ: has no in_batch, ",
+            "EnsembleQ has no in_batch, which FlashSAC.critic needs; write def",
         ),
         ("task=quadcopter env.asset=x", "env.asset=x: no model "),
         ("algo=localisation", "task=pendulum: has no env.acceleration, which localisation"),

@@ -153,9 +153,8 @@ def test_learning_curves_are_the_default(tmp_path, capsys):
     [
         (["runs=nowhere/*"], "runs=nowhere/*: no run there (a folder that holds metrics.jsonl)"),
         (["runs=[a,b]"], "runs=a: no run there (a folder that holds metrics.jsonl)"),
-        (["runs=RUNS,"], "runs: not given"),
         (["runs=RUNS", "metric=x/y"], "metric=x/y: not in these runs; they have train/return"),
-        (["runs=RUNS", "x=hours"], "x=hours: must be step, wall_s, or a number"),
+        (["runs=RUNS", "x=hours"], "x=hours: not in "),
         (["runs=RUNS", "out=a.jpg"], "out=a.jpg: must end in .png, .pdf, .svg, .csv"),
         (["runs=RUNS", "smooth=much"], "smooth=much: must be a number"),
         (["runs=RUNS", "threshold=high"], "threshold=high: must be a number in the metric's unit"),

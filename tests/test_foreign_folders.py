@@ -9,12 +9,11 @@ from foreign import METRIC, ROW, made, no_plain_file, refused
 from tiny import call, only_line
 
 from hybrid_rl import figures
-from hybrid_rl.analysis import long_table
+from hybrid_rl.analysis import tables
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.logs.log import RunLog
-from hybrid_rl.run.logs.loggers import CSV
 from hybrid_rl.tools.report import __main__ as report
 
 READ = {"config.yaml": "settings", "metrics.jsonl": "rows", "summary.json": "summary"}
@@ -85,9 +84,9 @@ def test_a_resumed_run_writes_to_its_own_files_only(folder, name, kind):
         os.mkfifo(folder / name)
     with (
         pytest.raises(UsageError, match=f"{name}: is a link, or no plain file"),
-        RunLog(folder, [0], [CSV(folder)] if name == "metrics.csv" else []),
+        RunLog(folder, [0], {}, ["csv"]) as log,
     ):
-        pass
+        log.write([ROW])
     assert precious.read_text() == "all that I have\n"
 
 
@@ -113,12 +112,13 @@ def test_a_damaged_row_is_named_and_a_resumed_run_goes_on_without_it(folder, bad
     file.write_bytes(known + b'{"after')
     with pytest.raises(UsageError, match="line 2 is no row of metrics"):
         _ = RunFolder(folder).rows
-    with RunLog(folder, [0], [CSV(folder)]) as log:
+    with RunLog(folder, [0], {}, ["csv"]) as log:
         (note,) = log.rewind(len(known), 9)
+        assert file.read_bytes() == known
+        log.write([ROW | {"step": 10}])
     assert "rows before step 9 are missing or edited" in note
-    assert file.read_bytes() == known
     steps = [line.split(",")[0] for line in (folder / "metrics.csv").read_text().split()]
-    assert steps == ["step", "5", "9"]
+    assert steps == ["step", "5", "9", "10"]
 
 
 @pytest.mark.parametrize(
@@ -156,9 +156,9 @@ HEAD = "exp_name,env_name,seed,metric,env_step,value\n"
 @pytest.mark.parametrize(
     ("rows", "words"),
     [
-        ("a,pendulum,0,m,1,1e308\n", "no row's metric is m"),
-        ("a,pendulum,0,m,1e400,1\n", "no row's metric is m"),
-        ("a,pendulum,0,m,nan,1\n", "no row's metric is m"),
+        ("a,pendulum,0,m,1,1e308\n", "must have rows of the metric m, env_name of pendulum"),
+        ("a,pendulum,0,m,1e400,1\n", "must have rows of the metric m, env_name of pendulum"),
+        ("a,pendulum,0,m,nan,1\n", "must have rows of the metric m, env_name of pendulum"),
         ("a,pendulum,0,m,1,nan\na,pendulum,0,m,1,2\n", ""),
         ("a,pendulum,0,m,1," + "x" * 2_000_000, "must have the columns"),
         ("a,pendulum," + "9" * 5000 + ",m,1,1\n", "must have the columns"),
@@ -180,7 +180,7 @@ def test_a_table_of_others_is_read_within_limits(tmp_path, rows, words):
     if rows == "large":
         os.truncate(file, 10**9)
     if not words:
-        assert [one.each.tolist() for one in long_table.read(file, "m", ["pendulum"])] == [[[2]]]
+        assert [one.each.tolist() for one in tables.read(file, "m", ["pendulum"])] == [[[2]]]
         return
     with pytest.raises(UsageError, match=f"^others={file}: .*{words}"):
-        long_table.read(file, "m", ["pendulum"])
+        tables.read(file, "m", ["pendulum"])

@@ -7,12 +7,12 @@ from foreign import METRIC, changed, made, refused
 from tiny import call, call_train, contents, only_line
 
 from hybrid_rl import demonstrate, evaluate, export, figures, render
-from hybrid_rl.analysis import recorded
 from hybrid_rl.cli import command
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.machine import jax_settings
 from hybrid_rl.settings import build as config
+from hybrid_rl.thesis.studies import recorded
 from hybrid_rl.tools.report import __main__ as report
 
 SYSTEM = {"_target_": "os.system", "command": "true"}

@@ -64,12 +64,6 @@ def test_a_changed_json_changes_the_marked_numbers_and_nothing_else(results):
     assert marks.written(table) == table
 
 
-def test_other_words_may_change_freely(results):
-    page = marks.written(f"{SENTENCE}\n\n{TABLE}")
-    edited = page.replace("it has", "the hopper now has").replace("| 7 |", "| 9 |")
-    assert marks.written(edited) == edited
-
-
 @pytest.mark.parametrize(
     ("expression", "expected"),
     [

@@ -24,7 +24,7 @@ from brax.envs import base
 from jax import Array
 
 from hybrid_rl.protocols import Env
-from hybrid_rl.types import EnvState
+from hybrid_rl.types import EnvState, PyTree
 
 
 class BraxEnv(base.Env):
@@ -41,18 +41,16 @@ class BraxEnv(base.Env):
         """
         if jnp.issubdtype(rng.dtype, jax.dtypes.prng_key):
             raise TypeError("Brax takes keys of jax.random.PRNGKey, not of jax.random.key")
-        first: Any = self.env.reset(rng)
-        pipeline_state: Any = (first.data, first.info)
+        first = self.env.reset(rng)
+        pipeline_state: PyTree = first.data, first.info
         done = jnp.float32(0.0)
         return base.State(pipeline_state, first.obs, first.reward, done, dict(first.metrics), {})
 
     def step(self, state: Any, action: Array) -> base.State:
         """The state after one decision."""
         data, info = state.pipeline_state
-        no = jnp.zeros((), bool)
-        before = EnvState(
-            data, state.obs, state.reward, state.done.astype(bool), no, state.metrics, info
-        )
+        ended, metrics = state.done.astype(bool), state.metrics
+        before = EnvState(data, state.obs, state.reward, ended, metrics=metrics, info=info)
         after = self.env.step(before, action)
         return state.replace(
             pipeline_state=(after.data, after.info),

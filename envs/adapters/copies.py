@@ -96,14 +96,7 @@ class Copies:
 
     def picture(self) -> np.ndarray:
         """The first environment [height, width, 3] (uint8), with render_mode="rgb_array"."""
-
-        def drawn() -> Any:
-            try:
-                return self._vector.render()[0]
-            except NotImplementedError as error:  # from `gymnasium.Env.render`: the user wrote none
-                raise WorldError(f"{self.env.name}: {PICTURE}") from error
-
-        found = self._call("render", drawn)
+        found = self._call("render", lambda: self._vector.render()[0])
         if not (isinstance(found, np.ndarray) and found.ndim == 3):
             line = f"{self.env.name}: render: returns {type(found).__name__}"
             raise WorldError(f"{line}; {PICTURE}")

@@ -12,10 +12,10 @@ Source: Gymnasium's documentation, "Env", "AutoresetMode".
 """
 
 import os
-import random
 import re
 from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import replace
 from functools import cache
 from typing import Any, NamedTuple, NoReturn
 
@@ -31,21 +31,18 @@ from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.envs.trial import check
 from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame
 from hybrid_rl.fields import Positive, part
+from hybrid_rl.protocols.contract import of_user
 from hybrid_rl.types import EnvState, Spec
 
 ACTIONS = "they must be a Box with finite bounds, of one number or more"
-FORMS = "they must be numbers in a form that Gymnasium flattens (Box, Discrete, Dict, Tuple), "
+FORMS = "they must be numbers in a form that Gymnasium flattens: Box, Discrete, Dict, Tuple"
 DT = 'add env.dt=0.05, the seconds of a decision, or metadata = {"render_fps": 20} to its class'
-RESET, STEP = "obs, info", "obs, reward, terminated, truncated, info"  # what the methods return
-UNKNOWN = (gymnasium.error.NamespaceNotFound, gymnasium.error.NameNotFound)
-HUGE = 100_000  # entries; an image has as many
-WIDE = 1_000  # of a small image
 DRAWS = re.compile("GLContext|MUJOCO_GL")  # in errors of MuJoCo's Renderer and of Gymnasium's
 
 
 @part
 class External(Made):
-    """An environment that Gymnasium makes; one copy is made to read its spaces and makes a step."""
+    """An environment that Gymnasium makes; to read its spaces one copy is made, and steps."""
 
     id: str = ""  # in place of `make`
     dt: Positive | None = None  # [s] between decisions; None: what the environment says
@@ -119,25 +116,13 @@ class External(Made):
                 )
         if isinstance(env.observation_space, Box) and len(env.observation_space.shape) == 1:
             return env
-        return Flat(env)
+        return FlattenObservation(env)
 
     def copies(
         self, seeds: Sequence[int], steps: int, repeat: int = 1, render_mode: str | None = None
     ) -> Copies:
         """One copy for each seed; steps: decisions until the time limit of each."""
         return Copies(self, seeds, steps, repeat, render_mode)
-
-
-class Flat(FlattenObservation):
-    """Flat observations; one that does not fit its space says so."""
-
-    def observation(self, observation: Any) -> Any:
-        """Observation [o]."""
-        try:
-            return super().observation(observation)
-        except (LookupError, TypeError, ValueError) as error:
-            what = f"lacks the key {error} of" if isinstance(error, KeyError) else "does not fit"
-            raise ValueError(f"obs {what} its space, {self.env.observation_space}") from error
 
 
 class Known(NamedTuple):
@@ -147,7 +132,6 @@ class Known(NamedTuple):
     steps: int | None  # the time limit [steps of the environment]
     space: Box  # of actions
     seen: Space  # of observations, as the environment returns them
-    notes: tuple[str, ...]  # what is allowed and seldom meant
 
 
 @cache
@@ -167,34 +151,27 @@ def _known(env: External) -> Known:
 
 def _read(env: External) -> Known:
     try:
-        one, before = env.one(), _generators()
-        found = one.reset(seed=0)
+        one = env.one()
+        one.reset(seed=0)  # some declare their spaces there
+        one.action_space.seed(0)
+        one.step(one.action_space.sample())
     except UsageError:
         raise
     except FAULTS as error:
-        key, line = "make" if env.make else "id", blame(error)
-        if isinstance(error, UNKNOWN) and ":" not in env.id and "Did you mean" not in line:
-            line += f" One that a module of yours registers is env.id=MODULE:{env.id}"
-        raise UsageError(f"env.{key}={env.name}: {line}") from error
+        key = "make" if env.make else "id"
+        raise UsageError(f"env.{key}={env.name}: {blame(error)}") from error
     space, obs = one.action_space, one.observation_space
-    bounds = np.array([space.low, space.high]) if isinstance(space, Box) else np.zeros(0)
-    if not (bounds.size and np.isfinite(bounds).all()):
+    if not (isinstance(space, Box) and flatdim(space) and space.is_bounded()):
         raise UsageError(f"{env.name}: has actions {space}; {ACTIONS}")
-    if not (isinstance(obs, Box) and 0 < np.prod(obs.shape) < HUGE):
-        raise UsageError(f"{env.name}: has observations {obs}; {FORMS}fewer than {HUGE:,}")
+    if not (isinstance(obs, Box) and np.prod(obs.shape) > 0):
+        raise UsageError(f"{env.name}: has observations {obs}; {FORMS}")
     dt = env.dt or _time_step(env.name, one)
-    _check_first(env.name, one, found)
-    notes = _unseeded(env.name, one, before)
     found = None if env.make or one.spec is None else gymnasium.spec(one.spec.id)
     limit = found.max_episode_steps if found else _limit(one)  # of the newest version of an env.id
     one.close()
-    assert isinstance(space, Box)
+    seen = one.env.observation_space if isinstance(one, FlattenObservation) else obs
     sizes = int(np.prod(obs.shape)), int(np.prod(space.shape))
-    if sizes[0] >= WIDE:
-        line = f"an observation has {sizes[0]:,} numbers; those of an image are learned as others"
-        notes += (f"{env.name}: {line}, without convolutions",)
-    seen = one.env.observation_space if isinstance(one, Flat) else obs
-    return Known(Spec(*sizes, dt), limit, space, seen, notes)
+    return Known(Spec(*sizes, dt), limit, space, seen)
 
 
 def _time_step(name: str, one: gymnasium.Env) -> float:
@@ -216,72 +193,10 @@ def _limit(env: gymnasium.Env) -> int | None:
 
 
 def check_world(env: Any) -> tuple[str, ...]:
-    """Notes about a world of the user's, before a run in it."""
+    """Notes about a world of the user's; in one of Gymnasium's, a decision is tried."""
     if isinstance(env, External):
-        return env.known.notes
-    return () if type(env).__module__.startswith("hybrid_rl.") else check(env)
-
-
-def _generators() -> dict[str, Any]:
-    """The states of the generators that a process has."""
-    _, key, *rest = np.random.get_state()
-    return {"np.random": (np.asarray(key).tobytes(), *rest), "random": random.getstate()}
-
-
-def _unseeded(name: str, one: gymnasium.Env, before: dict[str, Any]) -> tuple[str, ...]:
-    """A note if a reset and a step drew from a generator that `reset` does not seed.
-
-    before: their states then. It is silent where they draw only later.
-    """
-    after = _generators()
-    drawn = [each for each in after if after[each] != before[each]]
-    with suppress(*FAULTS):
-        if drawn:
-            one.reset(seed=0)
-            one.step(_middle(one.action_space))
-            drawn = [each for each in drawn if _generators()[each] != after[each]]
-    line = f"draws from {' and '.join(drawn)}, which seed= does not seed; use self.np_random"
-    return (f"{name}: {line}",) if drawn else ()
-
-
-def _middle(space: Any) -> np.ndarray:
-    """The action in the middle of its bounds."""
-    return np.add(space.low / 2, space.high / 2).astype(space.dtype)
-
-
-def _check_first(name: str, one: gymnasium.Env, found: Any) -> None:
-    """Raise WorldError for what reset returned, `found`, and what a first step returns."""
-    method, space, wanted = "reset", one.action_space, one.observation_space.shape or ()
-    try:
-        obs, _ = _entries(name, method, found, RESET)
-        _check_shape(name, method, "obs", obs, wanted)
-        method = "step"
-        obs, reward, *flags, _ = _entries(name, method, one.step(_middle(space)), STEP)
-        _check_shape(name, method, "obs", obs, wanted)
-        for word, value in zip(STEP.split(", ")[1:4], (reward, *flags), strict=True):
-            _check_shape(name, method, word, value, ())
-    except WorldError:
-        raise
-    except FAULTS as error:
-        raise WorldError(f"{name}: {method}: {blame(error)}") from error
-
-
-def _entries(name: str, method: str, found: Any, wanted: str) -> tuple:
-    """What a method returned, if it is as many things as `wanted`."""
-    if isinstance(found, tuple) and len(found) == len(wanted.split(", ")):
-        return found
-    many = f"{len(found)} things" if isinstance(found, tuple) else type(found).__name__
-    raise WorldError(f"{name}: {method}: returns {many}; it must return {wanted}")
-
-
-def _check_shape(name: str, method: str, word: str, value: Any, wanted: tuple[int, ...]) -> None:
-    """Raise WorldError for an entry that is no array of numbers of the shape `wanted`."""
-    shape = np.shape(value)
-    if shape != wanted:  # of a reward and the ends it is ()
-        must = f"its space says {list(wanted)}" if wanted else "it must be one number"
-        raise WorldError(f"{name}: {method}: {word} has the shape {list(shape)}; {must}")
-    with np.errstate(over="ignore"):  # what float32 cannot hold is infinite
-        numbers = np.asarray(value, np.float32)
-    for entry in np.flatnonzero(~np.isfinite(numbers)):
-        where = f"entry {entry} of {word}" if wanted else word
-        raise WorldError(f"{name}: {method}: {where} is not finite")
+        copy = replace(env, processes=False, timeout_s=None).copies([0], steps=2)
+        copy.reset()
+        copy.step(np.zeros((1, env.spec.act)))
+        copy.close()
+    return check(env) if of_user(env) else ()

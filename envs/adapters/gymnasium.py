@@ -69,8 +69,6 @@ def _checked(action: Any, shape: tuple[int, ...]) -> np.ndarray:
     action = np.asarray(action, np.float32)
     if action.shape != shape:
         raise ValueError(f"action has the shape {action.shape}; {shape} is needed")
-    if not np.isfinite(action).all():
-        raise ValueError(f"action={action.tolist()}: all numbers must be finite, from -1 to 1")
     return action
 
 
@@ -87,16 +85,12 @@ class GymnasiumEnv(gymnasium.Env):
     """One environment; reset and step are one compiled call each.
 
     Raises:
-        ValueError: for an unknown `render_mode`, or if `steps` is left out and `env` is no task of
-            this package.
+        ValueError: if `steps` is left out and `env` is no task of this package.
     """
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"]}
 
     def __init__(self, env: Env, steps: int | None = None, render_mode: str | None = None) -> None:
-        modes = self.metadata["render_modes"]
-        if render_mode not in (None, *modes):
-            raise ValueError(f"render_mode={render_mode!r}: choose one of None, {modes[0]!r}")
         self.env, self.render_mode, self._spec = env, render_mode, env.spec
         self.steps = time_limit(env) if steps is None else steps
         self.metadata = {**self.metadata, "render_fps": round(1 / env.spec.dt)}
@@ -130,7 +124,7 @@ class GymnasiumEnv(gymnasium.Env):
         """Initial observation [o] of an episode, and its metrics."""
         super().reset(seed=seed)
         self._packed = packed = self._reset(int(self.np_random.integers(2**31)))
-        self._count = self._beyond = 0  # steps of the episode, and from its end on
+        self._count = 0  # steps of the episode
         obs, _, _, info = self._read(packed)
         return obs, info
 
@@ -139,17 +133,13 @@ class GymnasiumEnv(gymnasium.Env):
 
         Raises:
             ResetNeeded: before the first `reset`.
-            ValueError: for an action of another shape, or with numbers that are not finite.
+            ValueError: for an action of another shape.
         """
         packed = _after_reset(self._packed, "step")
         self._packed = packed = self._step(packed, _checked(action, (self._spec.act,)))
         obs, reward, terminated, info = self._read(packed)
         self._count += 1
         truncated = 0 < self.steps <= self._count and not terminated
-        if self._beyond == 1:
-            gymnasium.logger.warn("step: the episode is over; call reset() to begin another one")
-        if self._beyond or terminated or truncated:
-            self._beyond += 1
         return obs, reward, terminated, truncated, info
 
     def render(self) -> np.ndarray:
@@ -214,7 +204,7 @@ class GymnasiumVectorEnv(VectorEnv):
 
         Raises:
             ResetNeeded: before the first `reset`.
-            ValueError: for actions of another shape, or with numbers that are not finite.
+            ValueError: for actions of another shape.
         """
         carry, shape = _after_reset(self._carry, "step"), (self.num_envs, self.env.spec.act)
         carry, last, truncated = self._step(carry, _checked(actions, shape))

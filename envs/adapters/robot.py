@@ -27,8 +27,6 @@ from hybrid_rl.errors import FAULTS, UsageError, blame
 from hybrid_rl.fields import Count, Natural, Positive, part
 from hybrid_rl.types import Spec
 
-METHODS = ("reset", "observe", "apply", "reward", "stop")
-
 
 @part
 class Outside(Unstepped):
@@ -65,19 +63,18 @@ class Robot(Made):
         if not self.make:
             raise UsageError("env.make: give MODULE:CLASS of your robot")
         kind = import_named(self.make)
-        missing = [name for name in METHODS if not callable(getattr(kind, name, None))]
-        missing += [name for name in ("dt", "low", "high", "obs") if not hasattr(kind, name)]
-        if missing:
-            raise UsageError(f"env.make={self.name}: lacks {', '.join(missing)}")
+        needed = "reset", "observe", "apply", "reward", "stop", "dt", "low", "high", "obs"
+        if missing := {*needed} - {*dir(kind)}:
+            raise UsageError(f"env.make={self.name}: lacks {', '.join(sorted(missing))}")
         return kind
 
     @property
     def spec(self) -> Spec:
         """Its sizes, and the time between decisions."""
         low, high = self.bounds
-        if low.shape != high.shape or low.ndim != 1 or not (low.size and (low < high).all()):
+        if low.shape != high.shape or not (low.size and (low < high).all()):
             raise UsageError(f"env.make={self.name}: low and high must be lists with low < high")
-        dt, obs = (float(self._numbers(name, ())) for name in ("dt", "obs"))
+        dt, obs = (float(self._numbers(name, 0)) for name in ("dt", "obs"))
         if not (dt > 0 and obs > 0 and obs.is_integer()):
             line = "dt and obs must be above 0, and obs a whole number"
             raise UsageError(f"env.make={self.name}: {line}")
@@ -86,7 +83,7 @@ class Robot(Made):
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """The least and the greatest action [m], in the robot's units."""
-        low, high = (self._numbers(name).astype(np.float32) for name in ("low", "high"))
+        low, high = (self._numbers(name, 1).astype(np.float32) for name in ("low", "high"))
         return low, high
 
     @property
@@ -94,20 +91,21 @@ class Robot(Made):
         """The safe action [m], from -1 to 1."""
         low, high = self.bounds
         middle = (low + high) / 2
-        given = middle if getattr(self.kind, "safe", None) is None else self._numbers("safe")
+        given = getattr(self.kind, "safe", None)
+        given = middle if given is None else self._numbers("safe", np.ndim(given))
         if given.shape not in ((), low.shape):
             raise UsageError(f"env.make={self.name}: safe must be one number, or as many as low")
         return np.clip(2 * (given - low) / (high - low) - 1, -1, 1).astype(np.float32)
 
-    def _numbers(self, name: str, shape: tuple[int, ...] | None = None) -> np.ndarray:
-        """A field of the class as numbers; UsageError for others, or another shape."""
+    def _numbers(self, name: str, axes: int) -> np.ndarray:
+        """A field of the class as finite numbers with so many axes; UsageError for others."""
         value = getattr(self.kind, name)
         try:
             numbers = np.asarray(value, float)
         except (TypeError, ValueError):  # words, a property
             numbers = np.full(1, np.nan)
-        if not np.isfinite(numbers).all() or shape not in (None, numbers.shape):
-            must = "finite numbers" if shape is None else "one finite number"
+        if not np.isfinite(numbers).all() or numbers.ndim != axes:
+            must = "finite numbers" if axes else "one finite number"
             raise UsageError(f"env.make={self.name}: {name}={value}: must be {must}")
         return numbers
 

@@ -1,6 +1,5 @@
 """Worlds that step outside JAX, and what makes those of the user."""
 
-import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, NoReturn
@@ -23,8 +22,7 @@ class Unstepped:
 
     def reset(self, key: Array) -> EnvState:
         """A state with zeros for the observation; the loop puts the true one."""
-        zero, no = jnp.zeros(()), jnp.zeros((), bool)
-        return EnvState((), jnp.zeros(self.spec.obs), zero, no, no)
+        return EnvState((), jnp.zeros(self.spec.obs), jnp.zeros(()))
 
     def step(self, state: EnvState, action: Array) -> NoReturn:
         """No JAX function."""
@@ -39,8 +37,6 @@ class Made(Unstepped):
     kwargs: Mapping[str, Any] | None = None  # of it
 
     def __post_init__(self) -> None:
-        if not (isinstance(self.make, str) or callable(self.make)):
-            raise UsageError(f"env.make={self.make}: must be MODULE:CLASS")
         if not isinstance(self.kwargs or {}, Mapping):
             raise UsageError(f"env.kwargs={self.kwargs}: must be {{KEY: VALUE}}")
         object.__setattr__(self, "kwargs", Items(self.kwargs or {}))
@@ -65,9 +61,7 @@ def import_named(make: Any) -> Callable[..., Any]:
     try:
         return getattr(*parts.imported(make))
     except FAULTS as error:  # whatever the user's module does
-        file = re.fullmatch(r"(?:\./)?(\w+)\.py:(\w+)", make)
-        hint = f"a module has no .py: {file[1]}:{file[2]}" if file else str(error)
-        line = user_line(error) or hint
+        line = user_line(error) or error
         raise UsageError(f"env.make={make}: cannot be imported ({line})") from error
 
 

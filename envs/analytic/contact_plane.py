@@ -143,10 +143,9 @@ class ContactPlane:
         return jnp.where(touches, jnp.concatenate([p, v]), x), touches
 
     def _state(self, body: Body, touch: Array, measured: Array) -> EnvState:
-        no = jnp.zeros((), bool)
         x, y, angle = body.pose
         metrics = {"touch": touch, "pose_x": x, "pose_y": y, "pose_angle": angle}
-        return EnvState(body, body.x, measured, no, no, metrics, {})
+        return EnvState(body, body.x, measured, metrics=metrics)
 
     def distance(self, s: Array, pose: Array | None = None) -> Array:
         """Signed distance [] [m] of s [2] to the nearest surface; `pose` [3] is theta."""

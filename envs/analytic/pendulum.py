@@ -93,5 +93,4 @@ def _obs(x: Array) -> Array:
 
 def _state(x: Array, reward: Array) -> EnvState:
     """State at x = (theta [rad], w [rad/s]) [2]."""
-    no = jnp.zeros((), bool)
-    return EnvState(x, _obs(x), reward, no, no, {}, {})
+    return EnvState(x, _obs(x), reward)

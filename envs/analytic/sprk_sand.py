@@ -85,12 +85,12 @@ class SprkSand:
     def _state(self, ball: Ball, a: Array, clock: Array) -> EnvState:
         """The state without noise, `clock` [] decisions after the reset."""
         now, later = self._reference(clock), self._reference(clock + 1)
-        x, no = jnp.concatenate([ball.p, ball.v]), jnp.zeros((), bool)
+        x = jnp.concatenate([ball.p, ball.v])
         e = x - now
         reward = -(60 * jnp.sum(e[:2] ** 2) + 5 * jnp.sum(e[2:] ** 2) + 0.1 * jnp.sum(a**2))
         metrics = {"tracking_error": jnp.linalg.norm(e[:2])}
         obs = jnp.concatenate([x, now, later])
-        return EnvState(ball, obs, reward, no, no, metrics, {CLOCK: clock})
+        return EnvState(ball, obs, reward, metrics=metrics, info={CLOCK: clock})
 
     def _reference(self, clock: Array) -> Array:
         """Position and velocity [4], `clock` [] decisions after the reset."""

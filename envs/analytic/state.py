@@ -10,8 +10,7 @@ from hybrid_rl.types import EnvState
 
 def fully_observed(x: Array, reward: Array, terminated: Array | bool = False) -> EnvState:
     """The state of an environment whose observation is its whole state x [o]."""
-    ended = jnp.asarray(terminated)
-    return EnvState(x, x, reward, ended, jnp.zeros((), bool), {}, {})
+    return EnvState(x, x, reward, jnp.asarray(terminated))
 
 
 class Euclidean(ABC):

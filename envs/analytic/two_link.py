@@ -52,13 +52,13 @@ class TwoLink:
 
     def _state(self, x: Array, target: Array) -> EnvState:
         """At x = (q1, q1', q2, q2') [4] with target [2]."""
-        obs, no = jnp.concatenate([x, target]), jnp.zeros((), bool)
+        obs = jnp.concatenate([x, target])
         e = self.to_local(obs)
         distance = jnp.linalg.norm(e[::2])
         success = (distance < self.success_distance).astype(jnp.float32)
         metrics = {"distance": distance, "success": success}
         reward = -jnp.sum(jnp.array(WEIGHTS) * e**2)
-        return EnvState(x, obs, reward, no, no, metrics, {"target": target})
+        return EnvState(x, obs, reward, metrics=metrics, info={"target": target})
 
     def dynamics(self, x: Array, u: Array) -> Array:
         """The next observation [6] after action u [2] at x [6], with the same target."""

@@ -15,7 +15,7 @@ from dataclasses import KW_ONLY
 from jax import Array
 
 from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.envs.mujoco.physics import Physics, check
+from hybrid_rl.envs.mujoco.physics import Physics, Simulator
 from hybrid_rl.fields import FieldError, NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
 
@@ -24,7 +24,7 @@ from hybrid_rl.types import EnvState, Spec
 class Body(ABC):
     """What such robots share; `physics` is native, mjx, warp or auto."""
 
-    physics: str = "auto"
+    physics: Simulator = "auto"
     _: KW_ONLY
     mass: Positive = 1.0  # factor on the mass and the inertia of every body
     friction: Positive = 1.0  # factor on every coefficient of sliding friction
@@ -32,7 +32,6 @@ class Body(ABC):
     payload: NotNegative = 0.0  # [kg] at the centre of mass of the root
 
     def __post_init__(self) -> None:
-        check(self.physics)
         size = self.spec.act
         if len(self._motors) != size:
             raise FieldError(self, "motors", f"must be 1 or {size} numbers, each above 0")

@@ -149,7 +149,7 @@ class Canvas:
         self._view = mujoco.MjrRect(0, 0, width, height)
         self._scenery = mujoco.MjvScene(self.model, maxgeom=10_000)
         self._scenery.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = False
-        self._window: Any = importlib.import_module(f"mujoco.{name}").GLContext(width, height)
+        self._window = importlib.import_module(f"mujoco.{name}").GLContext(width, height)
         with contextlib.ExitStack() as parts:
             parts.callback(self._window.free)
             self._window.make_current()

@@ -19,11 +19,10 @@ Source: MuJoCo's documentation, "Computation: the state" (mjSTATE_INTEGRATION).
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from importlib.util import find_spec
 from math import prod
 from types import MappingProxyType
-from typing import Any
+from typing import Annotated, Any, Literal, get_args
 
 import jax
 import jax.numpy as jnp
@@ -34,9 +33,20 @@ from jax import Array
 
 from hybrid_rl.envs.mujoco import mjcf, native
 from hybrid_rl.errors import install
+from hybrid_rl.fields import Must, part
 
 NATIVE_PER_CORE = 40  # environments per core of the host up to which auto is native
-IMPLEMENTATIONS = ("auto", "native", "mjx", "warp")
+Implementation = Literal["auto", "native", "mjx", "warp"]
+IMPLEMENTATIONS = get_args(Implementation)
+
+
+def _runs(implementation: str) -> bool:
+    """Whether an implementation can run on this machine."""
+    return implementation != "warp" or bool(find_spec("warp") and jax.default_backend() == "gpu")
+
+
+WARP = f"have an NVIDIA GPU and warp-lang ({install('warp')}); native is for a CPU, mjx for others"
+Simulator = Annotated[Implementation, Must(_runs, WARP)]  # of a field
 
 
 @struct.dataclass
@@ -59,27 +69,9 @@ class PhysicsState:
 
     def __getattr__(self, name: str) -> Any:
         """No field of MjData but these is kept: say how such a one is read."""
-        line = f"a state of the physics keeps no {name}"
-        if hasattr(mujoco.MjData, name):
-            line += f': a sensor measures it, or Physics(..., reads=("{name}",)) keeps it for '
-            line += f'physics.read(data, "{name}")'
-        raise AttributeError(line)
-
-
-def check(implementation: str) -> None:
-    """Raise ValueError if `implementation` is unknown or cannot run on this machine."""
-    if implementation not in IMPLEMENTATIONS:
-        known = ", ".join(IMPLEMENTATIONS)
-        raise ValueError(f"physics={implementation}: choose one of {known}")
-    if implementation != "warp":
-        return
-    if find_spec("warp") is None:
-        line = "physics='warp' needs the package warp-lang"
-        raise ValueError(f"{line}: {install('warp')}, or use mjx")
-    if jax.default_backend() != "gpu":
-        raise ValueError(
-            f"physics='warp' needs an NVIDIA GPU, and JAX runs on {jax.default_backend()}: "
-            "use native on a CPU, mjx on other accelerators"
+        raise AttributeError(
+            f"a state of the physics keeps no {name}: a sensor measures it, or Physics(..., "
+            f'reads=("{name}",)) keeps it for physics.read(data, "{name}")'
         )
 
 
@@ -97,17 +89,14 @@ def resolve(implementation: str, worlds: int | None = None) -> str:
     return "warp" if backend == "gpu" and find_spec("warp") else "mjx"
 
 
-@dataclass(frozen=True)
+@part
 class Physics:
     """Steps the model `asset`. Hashable and compared by value; `mjcf` caches the models."""
 
     asset: str  # file in assets/, an absolute path, or MJCF text
-    implementation: str = "auto"
+    implementation: Simulator = "auto"
     threads: int = 0  # of native; 0: one per core
     reads: tuple[str, ...] = ()  # fields of MjData, such as cinert; costs one mj_forward a decision
-
-    def __post_init__(self) -> None:
-        check(self.implementation)
 
     @property
     def model(self) -> mujoco.MjModel:

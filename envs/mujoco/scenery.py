@@ -30,13 +30,14 @@ DRAWN = "write `scene(self)`, MJCF text or its file, and `pose(self, state)`, it
 
 def scene_of(env: Any) -> str:
     """The name of the model that is drawn, for `mjcf.spec`: its MJCF text, or its file."""
-    return env.scene() if hasattr(env, "scene") else _first(env).asset
+    scene = getattr(env, "scene", None)
+    return _first(env).asset if scene is None else scene()
 
 
 def pose_of(env: Any) -> Callable[[EnvState], Array]:
     """The function from a state to the positions [nq] that are drawn."""
-    if hasattr(env, "pose"):
-        return env.pose
+    if (pose := getattr(env, "pose", None)) is not None:
+        return pose
     _first(env)
     return lambda state: simulated(state)[0].qpos
 
@@ -54,8 +55,7 @@ def _first(env: Any) -> PhysicsState:
     """The shapes of the simulation's state in `env`."""
     found = simulated(jax.eval_shape(env.reset, jax.random.key(0)))
     if not found:
-        missing = [f"`{name}`" for name in ("scene", "pose") if not hasattr(env, name)]
-        line = f"{type(env).__name__} has no {' and no '.join(missing)}: the world cannot be drawn"
+        line = f"{type(env).__name__} has no `scene` and no `pose`: the world cannot be drawn"
         raise ValueError(f"{line}; {DRAWN}")
     return found[0]
 

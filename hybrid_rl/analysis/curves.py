@@ -17,7 +17,6 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.analysis.dataframes import pandas
 from hybrid_rl.analysis.logged import Learner, common, count_failures, learners, swept
 from hybrid_rl.analysis.results import NOT_METRICS, RunFolder, differences, find, short
 from hybrid_rl.errors import UsageError
@@ -50,11 +49,12 @@ class Curve:
 
     def frame(self) -> Any:
         """A pandas.DataFrame: a row per value, columns task, label, seed, metric, x, value."""
-        frame = pandas().DataFrame
+        import pandas  # pyright: ignore[reportMissingImports]: an extra
+
         s, g = np.nonzero(np.isfinite(self.each))
         values = {"seed": np.array(self.seeds)[s], "metric": self.metric}
         values |= {"x": self.x[g], "value": self.each[s, g]}
-        return frame({"task": self.task, "label": self.label} | values)
+        return pandas.DataFrame({"task": self.task, "label": self.label} | values)
 
 
 def curves(
@@ -122,16 +122,6 @@ def band(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     draws = np.random.default_rng(0).integers(n, size=(RESAMPLES, n))
     low, high = np.percentile([iqm(values[draw]) for draw in draws], [2.5, 97.5], axis=0)
     return low, high
-
-
-def banded(values: np.ndarray) -> list[Any]:
-    """The IQM and the ends of its band, over the first axis: [n, ...] -> three of [...]."""
-    return [iqm(values), *band(values)]
-
-
-def band_of(values: np.ndarray) -> dict[str, Any]:
-    """What `banded` returns, as the JSON of a picture has it."""
-    return dict(zip(("iqm", "low", "high"), banded(values), strict=True))
 
 
 def format_number(value: float) -> str:

@@ -47,8 +47,6 @@ def write(
 
     pictures: of (which of them, whether the picture is one of a .png) the pictures, even in size.
     """
-    if out.suffix not in SUFFIXES:
-        raise ValueError(f"{out}: must end in {', '.join(SUFFIXES)}")
     shown = range(count)
     if out.suffix == ".gif" and fps > GIF_FPS:
         stride = int(np.ceil(fps / GIF_FPS))

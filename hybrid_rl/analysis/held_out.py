@@ -9,7 +9,6 @@ seed: with actions of the learned policies (of the runs with the most decisions,
 and with uniformly random actions. IQM and 95% band over the seeds of each run.
 """
 
-from pathlib import Path
 from typing import Annotated, Any
 
 import jax
@@ -19,8 +18,7 @@ from jax import Array
 
 from hybrid_rl.analysis import rows
 from hybrid_rl.analysis.curves import band, iqm
-from hybrid_rl.analysis.recorded import labels
-from hybrid_rl.analysis.results import find
+from hybrid_rl.analysis.results import find, labels
 from hybrid_rl.analysis.style import blank, words
 from hybrid_rl.cli.arguments import whole
 from hybrid_rl.errors import UsageError
@@ -50,9 +48,9 @@ def figure(
 ) -> tuple[Any, dict[str, Any]]:
     """Errors of each run on both kinds of decisions."""
     folders = find(runs)
-    trained = [restored(folder) for folder in folders]
-    if len({run.task for run in trained}) > 1:
-        raise UsageError(f"runs={runs}: the runs are of several tasks")
+    trained = [load(folder, "runs") for folder in folders]
+    if len({run.task for run in trained}) > 1 or any(run.params.model is None for run in trained):
+        raise UsageError(f"runs={runs}: needs runs of one task, each with a learned model")
     data = held_out(trained, decisions)
     numbers: dict[str, Any] = {"decisions": decisions, "runs": {}}
     for label, run in zip(labels(folders), trained, strict=True):
@@ -73,14 +71,6 @@ def summary(numbers: dict[str, Any]) -> list[str]:
             parts.append(f"{kind} {one[kind]['iqm']:.3f} [{low:.3f}, {high:.3f}]")
         lines.append(f"{name} decisions: {', '.join(parts)}")
     return lines
-
-
-def restored(folder: Path) -> Trained:
-    """The run in `folder`."""
-    run = load(folder, "runs")
-    if run.params.model is None:
-        raise UsageError(f"runs={folder}: has no learned model")
-    return run
 
 
 def held_out(trained: list[Trained], decisions: int) -> dict[str, tuple[Array, Array, Array]]:

@@ -7,7 +7,7 @@ settings (hybrid_rl.analysis.curves). Several metrics, such as
 metric=train/return,planner/mode_insertion_gradient, are one row of panels each. x=wall_s plots over
 time, x=KEY over a number that was swept, such as num_demonstrations. runs=FILE.json redraws a
 figure from its JSON. out=FILE.csv writes a table instead, a value of a seed in each row, with the
-columns exp_name, env_name, seed, metric, env_step, value (hybrid_rl.analysis.long_table);
+columns exp_name, env_name, seed, metric, env_step, value (hybrid_rl.analysis.tables);
 others=FILE.csv draws the curves of such a table, of another library's runs, beside these.
 
 The summary has the last value, the mean over the run (the area under the curve), the decisions to
@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
-from hybrid_rl.analysis import long_table
+from hybrid_rl.analysis import tables
 from hybrid_rl.analysis.curves import (
     Curve,
     area,
@@ -34,9 +34,8 @@ from hybrid_rl.analysis.curves import (
     steps_to,
 )
 from hybrid_rl.analysis.curves_picture import plot
+from hybrid_rl.analysis.results import redrawn
 from hybrid_rl.cli.arguments import number
-from hybrid_rl.errors import UsageError
-from hybrid_rl.run.files.reading import json_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -57,27 +56,27 @@ def figure(
     others: Annotated[str, "a table as out=FILE.csv writes, to draw beside the runs"] = "",
 ) -> tuple["Figure", dict[str, Any]]:
     """The learning curves of `runs`, and their numbers."""
-    if others and (x != "step" or str(runs).endswith(".json")):
-        raise UsageError("others: is drawn beside folders of runs, over decisions (x=step)")
-    if str(runs).endswith(".json"):
-        numbers = _read(runs)
+    if str(runs).endswith(".json") and not others:
+        picture, numbers = redrawn(runs, "runs", draw)
     else:
-        metrics = [name.strip() for name in metric.split(",")]
-        each = [curves(runs, name, x, group, smooth) for name in metrics]
-        for name, ours in zip(metrics if others else (), each, strict=False):
-            ours += long_table.read(others, name, [curve.task for curve in ours], smooth)
+        drawn = []
+        for name in map(str.strip, metric.split(",")):
+            ours = curves(runs, name, x, group, smooth)
+            tasks = {curve.task for curve in ours}
+            drawn += ours + (tables.read(others, name, tasks, x, smooth) if others else [])
         numbers = {
             "metric": metric,
             "x": x,
             "group": group,
             "line": "interquartile mean over seeds",
             "band": "95% percentile bootstrap over seeds",
-            "curves": [to_numbers(curve) for curve in itertools.chain(*each)],
-            "comparisons": comparisons([*itertools.chain(*each)]),
+            "curves": [to_numbers(curve) for curve in drawn],
+            "comparisons": comparisons(drawn),
         }
+        picture = draw(numbers)
     if threshold is not None:
         numbers["threshold"] = threshold
-    return draw(numbers), numbers
+    return picture, numbers
 
 
 def summary(numbers: dict[str, Any]) -> list[str]:
@@ -139,7 +138,7 @@ def comparisons(drawn: Sequence[Curve]) -> list[dict[str, Any]]:
 
 def table(numbers: dict[str, Any]) -> str:
     """The curves as text of a long table."""
-    return long_table.text(from_numbers(numbers), numbers["x"])
+    return tables.text(from_numbers(numbers), numbers["x"])
 
 
 def to_numbers(curve: Curve) -> dict[str, Any]:
@@ -161,18 +160,6 @@ def from_numbers(numbers: dict[str, Any]) -> list[Curve]:
         arrays = [np.array(one[name], float) for name in ARRAYS]
         drawn.append(Curve(one["task"], metric, one["label"], seeds, runs, *arrays, notes=notes))
     return drawn
-
-
-def _read(file: str | Path) -> dict[str, Any]:
-    """The numbers of a learning-curve figure."""
-    try:
-        numbers = json_file(Path(file))
-        from_numbers(numbers)
-        return numbers
-    except UsageError as error:
-        raise UsageError(f"runs={error}") from error
-    except (ValueError, KeyError, TypeError) as error:
-        raise UsageError(f"runs={file}: has no curves written by figures") from error
 
 
 def draw(numbers: dict[str, Any]) -> "Figure":

@@ -7,7 +7,7 @@ full.horizon or horizon. Runs of older versions are read, too.
 
 import glob
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -16,20 +16,21 @@ from typing import Any
 import yaml
 
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run.files.reading import Loader, lines, yaml_file
-from hybrid_rl.run.logs.records import COORDINATES, WORD, flatten_keys, row_of, summary_of
+from hybrid_rl.run.files.reading import Loader, json_file, lines, yaml_file
+from hybrid_rl.run.logs.records import COORDINATES, WORD, arrays, flatten_keys, row_of, summary_of
 from hybrid_rl.settings.complete import nearest
-from hybrid_rl.settings.values import SECTIONS
+from hybrid_rl.settings.values import PAID, SECTIONS
 
 NOT_METRICS = (*COORDINATES, WORD)  # of a row; every other name is a metric
 # Keys in which runs of the same settings may differ: which learners they hold, how long they run,
 # what they write, when and where. None of them changes what a learner does up to a given step.
-NOT_SETTINGS = (
+NOT_SETTINGS = {
     *("task", "algo", "seed", "num_seeds", "run_dir", "resume", "total_steps", "log_every"),
     *("eval_every", "eval_episodes", "eval_modes", "checkpoint_every", "checkpoint_replay"),
-    *("compile_cache", "version", "distributed", "logger"),
-)
-NOT_SETTINGS_ANYWHERE = ("physics",)  # implementations of the same equations
+    *("compile_cache", "version", "distributed", "logger", "physics"),
+}
+BUILT = (*SECTIONS, *PAID)  # groups from which a run is built; the others are their parts
+IMPLEMENTATION = ".physics"  # ending of the keys that choose one of the same equations
 UNSET, SET = "unset", "set"  # for a key that only some of the runs have, and for a group of keys
 MOST_KEYS, MOST_CHARACTERS = 3, 40  # of a label; beyond that it is a letter
 
@@ -84,42 +85,30 @@ class RunFolder:
         file = self.path / "summary.json"
         return summary_of(file) if file.exists() else {}
 
-    def word(self, key: str) -> str:
-        """The value at `key` as a word, of a part its class; "null" for null."""
-        word = self._word(key, "group")
-        if word is None:
-            raise UsageError(f"group={key}: not in {self.path}/config.yaml{self._near(key)}")
-        return word
+    def word(self, key: str, argument: str = "group") -> str:
+        """The value at `key`, which `argument` names, as a word; of a part its class."""
+        found = _matches(self.settings, key)
+        if not found and key in self.summary:
+            found = {key: self.summary[key]}
+        words = {name: _as_word(name, value) for name, value in found.items()}
+        if len(set(words.values())) == 1:
+            return next(iter(words.values()))
+        listed = ", ".join(f"{name}={word}" for name, word in words.items())
+        if words:
+            problem = f"has several values in {self.path}/config.yaml ({listed})"
+        else:
+            names = (name for name in self.settings if not name.endswith("_target_"))
+            near = nearest(key.rpartition(".")[2], sorted(names, key=lambda name: name.count(".")))
+            problem = f"not in {self.path}/config.yaml{f'; it has {near}' if near else ''}"
+        raise UsageError(f"{argument}={key}: {problem}")
 
     def number(self, key: str) -> float:
-        """The number at `key`."""
-        word = self._word(key, "x")
+        """The number at `key`, the x of a picture."""
+        word = self.word(key, "x")
         try:
-            return float(word or "")
+            return float(word)
         except ValueError:
-            has = self._near(key) if word is None else f"; {self.path} has {word}"
-            line = f"x={key}: must be step, wall_s, or a number in every run's config.yaml"
-            raise UsageError(line + has) from None
-
-    def _word(self, key: str, argument: str) -> str | None:
-        """The value at `key`, which `argument` names; None if there is none."""
-        found = _matches(self.settings, key)
-        words = {name: _as_word(name, value) for name, value in found.items()}
-        if len(set(words.values())) > 1:
-            listed = ", ".join(f"{name}={word}" for name, word in words.items())
-            raise UsageError(
-                f"{argument}={key}: has several values in {self.path}/config.yaml ({listed}); "
-                "give one of these keys"
-            )
-        if not words and key in self.summary:
-            return _as_word(key, self.summary[key])
-        return next(iter(words.values()), None)
-
-    def _near(self, key: str) -> str:
-        """A suggestion of keys that exist, for one that does not."""
-        names = sorted(self.settings, key=lambda name: name.count("."))
-        near = nearest(key.rpartition(".")[2], (n for n in names if not n.endswith("_target_")))
-        return f"; it has {near}" if near else ""
+            raise UsageError(f"x={key}: must be a number; {self.path} has {word}") from None
 
 
 def _matches(settings: Mapping[str, Any], key: str) -> dict[str, Any]:
@@ -136,62 +125,69 @@ def find(runs: str | Path | Iterable[str | Path], key: str = "runs") -> list[Pat
 
     runs: one, or several, also as "a/*,b/*" or "[a/*,b/*]". key: the argument that named them.
     """
-    if not runs:
-        raise UsageError(f'{key}: not given; give {key}="PATTERN" of run folders')
     given = [runs] if isinstance(runs, (str, Path)) else runs
     matches = [match for each in given for match in _matching(each)]
     if isinstance(runs, str) and "," in runs and not matches:
         text = runs[1:-1] if runs[0] + runs[-1] == "[]" else runs
-        several = [each.strip() for each in text.split(",")]
+        several = filter(None, map(str.strip, text.split(",")))
         return [*dict.fromkeys(path for each in several for path in find(each, key))]
     files = sorted({path for match in matches for path in match.glob("**/metrics.jsonl")})
-    if not files:
-        raise UsageError(f"{key}={runs}: no run there (a folder that holds metrics.jsonl)")
     if begun := [path.parent for path in files if path.stat().st_size]:
         return begun  # a start that failed leaves an empty file
-    more = f" and {len(files) - 1} more" if len(files) > 1 else ""
-    raise UsageError(f"{key}={runs}: {files[0]}{more}: no row of metrics yet")
+    problem = "no run there (a folder that holds metrics.jsonl)"
+    if files:
+        more = f" and {len(files) - 1} more" if len(files) > 1 else ""
+        problem = f"{files[0]}{more}: no row of metrics yet"
+    raise UsageError(f"{key}={runs}: {problem}")
 
 
 def _matching(run: str | Path) -> list[Path]:
     """What a glob matches; what exists is itself."""
     path = Path(run).expanduser()
-    return [path] if path.exists() else [*map(Path, glob.glob(str(path), recursive=True))]
+    if str(run) and path.exists():
+        return [path]
+    return [*map(Path, glob.glob(str(path), recursive=True))]
+
+
+def redrawn(
+    file: str | Path, argument: str, draw: Callable[[dict[str, Any]], Any]
+) -> tuple[Any, dict[str, Any]]:
+    """The picture that `draw` makes of the JSON of an earlier one, which `argument` names."""
+    try:
+        numbers = json_file(Path(file))
+        return draw(arrays(numbers)), numbers
+    except UsageError as error:
+        raise UsageError(f"{argument}={error}") from error
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        raise UsageError(f"{argument}={file}: has no numbers of this study") from error
 
 
 def differences(runs: Sequence[RunFolder], expected: Sequence[str] = ()) -> list[dict[str, str]]:
     """For each run the settings in which the runs differ: key -> value, as words.
 
-    The sections `env`, `episode`, `replay`, `controllers` and `learners` are compared, and the
-    single values at the root that all runs have. A value that occurs several times, as in the parts
-    that these sections refer to, counts once, by its shortest key: the one that a user overrides.
-    expected: keys that may differ, with all settings that have the same values.
+    Groups from which a run is built are compared, and single values at the root that all runs
+    have. A value that occurs several times, as in the parts to which these refer, counts once, by
+    its shortest key: the one that a user overrides. expected: keys that may differ, with all
+    settings that have the same values.
     """
     settings = [run.settings for run in runs]
-    built = [_built(each) for each in settings]
     names = {name for key in expected for each in settings for name in _matches(each, key)}
     known = {_column(settings, name) for name in names | set(expected)}
-    differ = {
-        key: column
-        for key, column in _columns(built).items()
-        if column not in known and not ("." not in key and UNSET in column)
+    columns = {key: _column(settings, key) for key in set().union(*settings)}
+    differ = {key: c for key, c in columns.items() if len(set(c)) > 1 and c not in known}
+    compared = {
+        (_last(key), column)
+        for key, column in differ.items()
+        if _is_compared(key, settings)
+        and ("." in key or UNSET not in column)
+        and not (_is_of_some(column) and any(parent in differ for parent in _parents(key)))
     }
-    columns = _columns(settings) if differ else {}
     shortest: dict[tuple[str, tuple[str, ...]], str] = {}
-    for key, column in differ.items():
-        if UNSET in column and any(parent in differ for parent in _parents(key)):
-            continue  # a field of a part that the others do not have
-        leaf = key.rpartition(".")[2]
-        same = [k for k, c in columns.items() if c == column and k.rpartition(".")[2] == leaf]
-        part = _class(settings[0], key)
-        shortest[leaf, column] = min(
-            same, key=lambda k: (_class(settings[0], k) != part, k.count("."), len(k))
-        )
+    for key in sorted(differ, key=lambda key: (key.count("."), len(key), key)):
+        if (name := (_last(key), differ[key])) in compared:
+            shortest.setdefault(name, key)
     return [
-        {
-            name.removesuffix("._target_"): column[i]
-            for (_, column), name in sorted(shortest.items())
-        }
+        {key.removesuffix("._target_"): column[i] for (_, column), key in sorted(shortest.items())}
         for i in range(len(runs))
     ]
 
@@ -205,6 +201,22 @@ def short(differing: Sequence[Mapping[str, str]]) -> list[str]:
         return labels
     order = sorted(set(labels))
     return [_letters(order.index(label)) for label in labels]
+
+
+def labels(folders: list[Path]) -> list[str]:
+    """The method of each run, with the settings in which its runs differ, or else its folder."""
+    runs = [RunFolder(folder) for folder in folders]
+    algos = [run.word("algo") for run in runs]
+    result = [""] * len(runs)
+    for algo in set(algos):
+        group = [i for i, other in enumerate(algos) if other == algo]
+        words = short(differences([runs[i] for i in group]))
+        for i, more in zip(group, words, strict=True):
+            result[i] = f"{algo} {more}".strip() if "=" in more or not more else folders[i].name
+    return [
+        label if result.count(label) == 1 else str(folder)
+        for label, folder in zip(result, folders, strict=True)
+    ]
 
 
 def _ending(key: str, keys: Sequence[str]) -> str:
@@ -221,36 +233,31 @@ def _letters(number: int) -> str:
     return chr(ord("A") + number % 26) + (str(number // 26) if number >= 26 else "")
 
 
-def _built(settings: Mapping[str, Any]) -> dict[str, Any]:
-    """The settings of what a run built; all of them if it has no learners section."""
-    ours = any(key.startswith("learners.") for key in settings)
-    return {
-        key: value
-        for key, value in settings.items()
-        if key not in NOT_SETTINGS
-        and key.rpartition(".")[2] not in NOT_SETTINGS_ANYWHERE
-        and not (ours and "." in key and key.partition(".")[0] not in SECTIONS)
-    }
-
-
-def _columns(settings: Sequence[Mapping[str, Any]]) -> dict[str, tuple[str, ...]]:
-    """The keys whose values differ, and the value of each run."""
-    columns = {key: _column(settings, key) for key in sorted(set().union(*settings))}
-    return {key: column for key, column in columns.items() if len(set(column)) > 1}
-
-
 def _column(settings: Sequence[Mapping[str, Any]], key: str) -> tuple[str, ...]:
     def one(each: Mapping[str, Any]) -> str:
-        if key in each:
-            return _as_word(key, each[key])
+        for name in (key, f"{key}._target_"):
+            if name in each:
+                return _as_word(name, each[name])
         return SET if any(name.startswith(f"{key}.") for name in each) else UNSET
 
     return tuple(map(one, settings))
 
 
-def _class(settings: Mapping[str, Any], key: str) -> Any:
-    """The class of the part that a key belongs to."""
-    return settings.get(f"{key.rpartition('.')[0]}._target_")
+def _is_compared(key: str, settings: Sequence[Mapping[str, Any]]) -> bool:
+    """Whether a key changes what a run learns: of a group, that the run was built from it."""
+    root, *more = key.split(".")
+    whole = any(name.startswith("controllers.") for each in settings for name in each)
+    built = not more or not whole or root in BUILT
+    return built and key not in NOT_SETTINGS and not key.endswith(IMPLEMENTATION)
+
+
+def _is_of_some(column: tuple[str, ...]) -> bool:
+    """Whether some runs lack a key, and the others have the same value."""
+    return UNSET in column and len(set(column)) == 2
+
+
+def _last(key: str) -> str:
+    return key.rpartition(".")[2]
 
 
 def _parents(key: str) -> list[str]:

@@ -1,16 +1,13 @@
-"""A row for each method: points with their bands, or a dot for each trial."""
+"""A row for each method: points with their bands."""
 
 import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-import numpy as np
-
 from hybrid_rl.analysis.style import BLACK, colours, words
 
 ROW = 34  # [characters] of a line of the name of a row
 HEIGHT = 0.34  # [in] of a row
-NEVER = 1.1, 1.25, 1.4  # over the end of an axis: where it is grey, the dots there, its right edge
 
 
 def points(
@@ -30,21 +27,7 @@ def points(
             axes.plot(middle, y, "o", ms=4.5, **_face(colour, k, most))
     for k, mark in enumerate(marks):
         axes.plot([], [], "o", ms=4.5, label=mark, **_face(BLACK, k, len(marks)))
-    _name(axes, entries or map(words, spreads))
-
-
-def trials(axes: Any, each: Mapping[str, Any], end: float) -> None:
-    """A dot for each trial's value [S] up to `end`, and their median; without one, in the grey."""
-    own = colours(each)
-    for row, (label, values) in enumerate(each.items()):
-        shown = np.minimum(np.nan_to_num(np.asarray(values, float), nan=np.inf), NEVER[1] * end)
-        spread = row + np.linspace(-0.25, 0.25, len(shown))
-        axes.plot(np.sort(shown), spread, "o", ms=3, alpha=0.6, color=own[label])
-        middle = np.quantile(shown, 0.5, method="inverted_cdf")
-        axes.plot([middle, middle], [row - 0.35, row + 0.35], color=BLACK, lw=1.5)
-    axes.axvspan(NEVER[0] * end, NEVER[2] * end, color="#EEEEEE", lw=0)
-    axes.set_xlim(None, NEVER[2] * end)
-    _name(axes, map(words, each))
+    name(axes, entries or map(words, spreads))
 
 
 def _face(colour: str, k: int, most: int) -> dict[str, Any]:
@@ -55,7 +38,7 @@ def _face(colour: str, k: int, most: int) -> dict[str, Any]:
     return {"color": colour, "mfc": [1 - share * (1 - part) for part in to_rgb(colour)]}
 
 
-def _name(axes: Any, entries: Iterable[str]) -> None:
+def name(axes: Any, entries: Iterable[str]) -> None:
     """The names of the rows, the first one above."""
     names = [textwrap.fill(entry, ROW) for entry in entries]
     axes.set_yticks(range(len(names)), names)

@@ -15,7 +15,7 @@ from omegaconf import DictConfig, OmegaConf, open_dict
 
 from hybrid_rl.cli import arguments, command
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run import inherited
+from hybrid_rl.run import start
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings import words as overrides
 from hybrid_rl.settings.compose import check_choices
@@ -75,7 +75,7 @@ def hydra_main(job: Callable[..., Any]) -> None:
     def composed() -> None:
         line = _ordered(sys.argv[1:])
         mine = [text.partition("=")[2] for text in line if text.startswith("--config-dir=")]
-        line = inherited.add_recipe(line, *mine)
+        line = start.add_recipe(line, *mine)
         if (shown := _shown(line, mine)) is not None:
             print(shown, end="")
             return

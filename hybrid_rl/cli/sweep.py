@@ -25,7 +25,7 @@ from hybrid_rl.cli import command, hydra_line
 from hybrid_rl.cli.combinations import jobs_of, labels
 from hybrid_rl.cli.submitted import Result, launch, require_slurm
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run import together
+from hybrid_rl.run import members as program
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.folder import NO_CHECKPOINT, members, new_folder, rowless
@@ -203,7 +203,7 @@ class Sweeper:
                 config.physics = "native"
             try:
                 with hydra_line.as_typed(overrides):
-                    _check(together.expand_sweep(config, overrides), here(self.config.hydra))
+                    _check(program.expand_sweep(config, overrides), here(self.config.hydra))
             except (UsageError, OmegaConfBaseException) as error:
                 line = error if isinstance(error, UsageError) else explain(error)
                 raise UsageError(f"{line} ({self._called(number)})") from error
@@ -214,7 +214,7 @@ class Sweeper:
         return f"{self.task.called} {number}: {self.task.labels[number]}".removesuffix(": ")
 
 
-def _check(members: Sequence[together.Member], joins: bool) -> None:
+def _check(members: Sequence[program.Member], joins: bool) -> None:
     """Raise UsageError if a job cannot run, alone or with those that share its program.
 
     joins: it runs in this process, one of those of distributed=true, which are counted first.
@@ -228,7 +228,7 @@ def _check(members: Sequence[together.Member], joins: bool) -> None:
                 distributed.share(each.config)
             runs.append(build_new_run(each.config)[0])
     if len(runs) > 1:
-        together.axis_of(members, runs)
+        program.axis_of([member.values for member in members], runs)
 
 
 def _folders(jobs: Sequence[Sequence[str]], configs: Sequence[DictConfig]) -> list[list[str]]:

@@ -19,7 +19,7 @@ of its loop, as the response to a correction may begin in the wrong direction.
 
 import math
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import jax
 import jax.numpy as jnp
@@ -147,8 +147,8 @@ class _Plan:
         """The gain W at x [T, n]."""
         if self.of.gain is not None:
             return self.of.gain
-        policy: Any = self.of.policy  # __post_init__ has checked that there is one
-        return jax.vmap(policy.variance, (None, 0))(self.params.policy, x)
+        assert self.of.policy is not None  # as __post_init__ has checked
+        return jax.vmap(self.of.policy.variance, (None, 0))(self.params.policy, x)
 
     def window(self, v: Array) -> Array:
         """Corrections v [T, m]; with `search` only those in the window of maximum return."""

@@ -10,7 +10,8 @@ With `ahead` T > 0 the target instead values the way to s_i: its T positions on 
 the last one s_i (thesis section 5.3.1).
 """
 
-from typing import NamedTuple, Protocol, cast
+from collections.abc import Callable
+from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -20,13 +21,6 @@ from hybrid_rl.core.domain import Box
 from hybrid_rl.fields import Count, FieldError, Natural, Positive, part
 from hybrid_rl.protocols import StabilizingPolicy, Target
 from hybrid_rl.types import Params, Spec
-
-
-class PathTarget(Target, Protocol):
-    """A target that values ways too."""
-
-    def along(self, params: Params, path: Array) -> Array:
-        """The value [] of measurements on path [T, v]."""
 
 
 class GoalState(NamedTuple):
@@ -40,7 +34,7 @@ class GoalState(NamedTuple):
 class GoalController:
     """Drives to the maximum of a target."""
 
-    target: Target  # with `ahead` a PathTarget
+    target: Target  # with `ahead` one that has `along`
     domain: Box
     policy: StabilizingPolicy | None = None  # None: the action is the goal
     samples: Count = 1000  # N candidates
@@ -49,10 +43,14 @@ class GoalController:
     ahead: Natural = 0  # T positions on the way to a candidate; 0: the candidate alone
 
     def __post_init__(self) -> None:
-        if self.ahead and not hasattr(self.target, "along"):
-            kind = type(self.target).__name__
-            words = f"{kind} values no ways; target=entropy_reduction does"
+        if self.ahead and self._along is None:
+            words = "this target cannot score a path; use target=entropy_reduction"
             raise FieldError(self, "ahead", words)
+
+    @property
+    def _along(self) -> Callable[[Params, Array], Array] | None:
+        """The value [] of measurements on a path [T, v]; None if the target has none."""
+        return getattr(self.target, "along", None)
 
     def init(self, spec: Spec) -> GoalState:
         """No goal yet."""
@@ -78,12 +76,11 @@ class GoalController:
 
     def _values(self, params: Params, start: Array, s: Array) -> Array:
         """The value [N] of each candidate s [N, v], or of the way to it from `start` [v]."""
-        if not self.ahead:
+        if not self.ahead or self._along is None:
             return jax.vmap(self.target.log_density, (None, 0))(params, s)
-        target = cast(PathTarget, self.target)
         steps = jnp.arange(1, self.ahead + 1)[None, :, None] / self.ahead
         ways = start[None, None] + steps * (s - start[None])[:, None]
-        return jax.vmap(target.along, (None, 0))(params, ways)
+        return jax.vmap(self._along, (None, 0))(params, ways)
 
     def greedy(self) -> "GoalController":
         """The same controller: it has no exploration noise."""

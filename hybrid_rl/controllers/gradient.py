@@ -38,6 +38,7 @@ from jax import Array
 
 from hybrid_rl.core import agreement
 from hybrid_rl.core.batching import join, prepend
+from hybrid_rl.core.lifting import is_world
 from hybrid_rl.core.rollout import Priced, predict_members, priced
 from hybrid_rl.core.sampling import Kept
 from hybrid_rl.fields import (
@@ -93,7 +94,7 @@ class GradientController:
     priced: bool = False  # whether the objective's reward, learned with it, has its price already
 
     def __post_init__(self) -> None:
-        if hasattr(self.model, "start"):
+        if is_world(self.model):
             words = "has no gradients; choose model=exact, or one that learns, such as ensemble"
             raise FieldError(self, "model", words)
 

@@ -101,11 +101,11 @@ class SamplingController:
 
     def _to_go(self, params: Params, state: Kept, x: Any, key: Array) -> tuple[ToGo, Any, Array]:
         """S of paths from x [n], the objective's memory, and a key for other uses."""
-        objective: Any = self.objective
-        if hasattr(objective, "reward_to_go"):
-            return lambda path: objective.reward_to_go(params, path), state.memory, key
+        to_go = getattr(self.objective, "reward_to_go", None)
+        if to_go is not None:
+            return lambda path: to_go(params, path), state.memory, key
         key, preparing = jax.random.split(key)
-        value, memory = objective.prepare(params, state.memory, x, state.u, preparing)
+        value, memory = self.objective.prepare(params, state.memory, x, state.u, preparing)
         return lambda path: jnp.full(len(path.u) + 1, value(path)), memory, key
 
     def _agreement(self, params: Params, x: Any, plan: Array, to_go: ToGo) -> dict[str, Array]:

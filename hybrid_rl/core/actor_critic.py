@@ -24,7 +24,7 @@ from jax import Array
 from hybrid_rl.core import decay, soft_return, statistics
 from hybrid_rl.fields import Count, Discount, NotNegative, Positive, Share, part
 from hybrid_rl.protocols import Critic, LearnedPolicy, Schedule
-from hybrid_rl.types import Batch, Imagined, Params, Spec
+from hybrid_rl.types import Batch, Imagined, Params, PyTree, Spec
 
 
 @struct.dataclass
@@ -36,9 +36,9 @@ class ActorCriticState:
     target: Any  # of the critic
     policy_optimiser: Any
     critic_optimiser: Any
-    target_policy: Any = None
-    log_alpha: Any = None  # []
-    alpha_optimiser: Any = None
+    target_policy: PyTree = None
+    log_alpha: PyTree = None  # []
+    alpha_optimiser: PyTree = None
 
 
 class Along(NamedTuple):
@@ -82,7 +82,7 @@ class ActorCritic:
         for_policy, for_critic = jax.random.split(key)
         policy, critic = self.policy.init(for_policy, spec), self.critic.init(for_critic, spec)
         target = jax.tree.map(jnp.copy, critic)
-        each = learned(policy), learned(critic), log_alpha
+        each: tuple[PyTree, ...] = learned(policy), learned(critic), log_alpha
         of_policy, of_critic, of_alpha = map(optax.adam(1.0).init, each)
         state = ActorCriticState(policy, critic, target, of_policy, of_critic)
         return state.replace(log_alpha=log_alpha, alpha_optimiser=of_alpha)

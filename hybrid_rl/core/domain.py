@@ -38,8 +38,8 @@ class Box:
 
         The weights of points in the box would otherwise follow its faint tails.
         """
-        target: Any = part.target
-        if hasattr(target, "outside") and target.outside(self.low, self.high):
+        outside = getattr(part.target, "outside", None)
+        if outside is not None and outside(self.low, self.high):
             box = f"domain.low={list(self.low)} domain.high={list(self.high)}"
             raise FieldError(part, "target", f"all of it lies outside {box}; change one of the two")
 

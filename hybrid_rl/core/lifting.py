@@ -22,9 +22,14 @@ def is_identity(model: Model | None, params: PyTree, size: int) -> bool:
     return lifted.shape == obs.shape and bool((lifted == obs).all())
 
 
+def is_world(model: Any) -> bool:
+    """Whether a model is the world itself, whose planning states are the world's."""
+    return callable(getattr(model, "start", None))
+
+
 def start(model: Any, params: Params, obs: Array) -> Any:
     """The planning state from which to plan at obs [o]; of a world model, the world's state."""
-    return model.start(params) if hasattr(model, "start") else model.lift(params.model, obs)
+    return model.start(params) if is_world(model) else model.lift(params.model, obs)
 
 
 def policy_input(x: Array | EnvState) -> Array:

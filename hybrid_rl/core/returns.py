@@ -3,12 +3,11 @@
 S_t = r_t + c_t S_{t+1},   S_T = the value of the last state
 """
 
-from typing import Any
-
 import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.protocols.contract import words
 from hybrid_rl.types import Path, Reward, Step
 
 
@@ -38,13 +37,6 @@ def check_start(step: Step, x: Array, before: Array) -> None:
         given = f"x is {list(jnp.shape(x))} and before {list(jnp.shape(before))}"
         raise ValueError(f"{given}; they must be [n] and [T, m]: jax.vmap plans for many states")
     traced = jax.eval_shape(lambda x, u: (step(x, u), x), x, before[0])
-    after, wanted = map(_form, traced)
+    after, wanted = map(words, traced)
     if after != wanted:
         raise ValueError(f"step returns {after}, where x is {wanted}; it must return another x")
-
-
-def _form(value: Any) -> str:
-    """An array's shape and kind of numbers, [2] of float32, or the class of what is none."""
-    if not hasattr(value, "dtype"):
-        return type(value).__name__
-    return f"{list(value.shape)} of {value.dtype}"

@@ -80,7 +80,7 @@ def predict_members(model: Model, params: Any, x: Array, u: Array) -> tuple[Arra
 
     A model that is no ensemble counts as one member. params: of the model.
     """
-    each: Any = getattr(model, "predictions", None)
+    each = getattr(model, "predictions", None)
     if each is not None:
         return each(params, x, u)
     after = model.step(params, x, u)

@@ -25,7 +25,7 @@ from hybrid_rl.core import returns, rollout
 from hybrid_rl.core.batching import repeat
 from hybrid_rl.core.lifting import policy_input
 from hybrid_rl.protocols import Proposal
-from hybrid_rl.types import Params, Path, Reward, Spec, Step
+from hybrid_rl.types import Params, Path, PyTree, Reward, Spec, Step
 
 
 class Samples(NamedTuple):
@@ -41,7 +41,7 @@ class Kept(NamedTuple):
     plan: Array  # [T, m] from the next decision on
     u: Array  # [m] the previous action
     memory: Any  # of the objective
-    more: Any = None  # a planner's own
+    more: PyTree = None  # a planner's own
 
     def later(self, plan: Array, u: Array, memory: Any, rest: float = 0.0) -> "Kept":
         """The state after `plan` [T, m], of which u [m] acts: shifted, where the two are finite."""
@@ -118,7 +118,7 @@ def parts_of(proposal: Proposal, quantiles: np.ndarray) -> list[tuple[Proposal, 
     """The parts of a mixture, nested or not, with the quantiles of their candidates."""
     if not len(quantiles):
         return []
-    split: Any = getattr(proposal, "split", None)
+    split = getattr(proposal, "split", None)
     if split is None:
         return [(proposal, quantiles)]
     return [each for part, own in split(quantiles) for each in parts_of(part, own)]

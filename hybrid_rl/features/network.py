@@ -11,7 +11,7 @@ from jax import Array
 
 from hybrid_rl.core.lifting import check_coordinates, select
 from hybrid_rl.fields import Count, part
-from hybrid_rl.networks import MLP, Activation, Widths, precision
+from hybrid_rl.networks import MLP, Activation, Widths, apply, precision
 from hybrid_rl.types import Spec
 
 
@@ -39,5 +39,5 @@ class Network:
         """z [n] of an observation [o]."""
         y = select(obs, self.coordinates)
         with precision.using("float32"):  # least squares follow
-            z: Any = self._net.apply(params["weights"], y)
+            z = apply(self._net, params["weights"], y)
         return jnp.concatenate([y, z]) if self.include_state else z

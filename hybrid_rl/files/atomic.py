@@ -53,9 +53,6 @@ def replacing(path: Path) -> Iterator[Path]:
     """The path of a draft to write, which ends like `path` and replaces it afterwards.
 
     After an error, or Ctrl-C, the draft is gone and `path` is what it was.
-
-    Raises:
-        OSError: which names `path`, if it can't be written.
     """
     draft = path.with_name(f".{secrets.token_hex(4)}.{path.name}")
     with naming(path):

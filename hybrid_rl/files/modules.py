@@ -6,6 +6,7 @@ import re
 import sys
 import sysconfig
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from functools import cache
 from importlib import metadata
 from importlib.machinery import PathFinder
@@ -25,16 +26,12 @@ def theirs(names: list[str], near: Path | None) -> Path:
     """The file of a module of the user; ValueError if there is none."""
     if names[0] == "gymnasium":
         raise ValueError(f"makes {GYMNASIUM}")
-    try:
+    spec = None
+    with suppress(ImportError, ValueError, AttributeError):
         spec = find_spec(names[0])  # of the first name alone, so that nothing is imported
-    except (ImportError, ValueError, AttributeError):
-        spec = None
-    if spec is None:
-        raise ValueError(OTHER)
-    tops, ours = _tops(spec), names[0] in CHECKOUT
-    if not all(
-        _of_user(top.parent) and not (ours and top.parent == PACKAGE.parent) for top in tops
-    ):
+    tops = _tops(spec) if spec else []
+    ours = PACKAGE.parent if names[0] in CHECKOUT else None
+    if not tops or any(top.parent == ours or not _of_user(top.parent) for top in tops):
         raise ValueError(OTHER)
     if near is not None and any(_together(top, near.resolve()) for top in tops):
         raise ValueError(f"is code beside what names it; move {near} out of {tops[0]}")
@@ -59,13 +56,13 @@ def below(names: list[str]) -> Path:
 
 
 def _together(top: Path, near: Path) -> bool:
-    """Whether one of the two paths lies in the other."""
+    """True if one of the two paths lies in the other."""
     top = top.parent.resolve() / top.name
     return top == near or top in near.parents or near in top.parents
 
 
 def _of_user(folder: Path) -> bool:
-    """Whether a folder is on Python's path, and not of Python or of installed packages."""
+    """True if a folder is on Python's path, and not of Python or of installed packages."""
     folder = folder.resolve()
     if not any(folder == Path(entry or os.curdir).resolve() for entry in sys.path):
         return False
@@ -81,7 +78,7 @@ def _of_python() -> tuple[Path, ...]:
 
 
 def absent(name: str) -> bool:
-    """Whether Python finds no module `name`."""
+    """True if Python finds no module `name`."""
     try:
         return find_spec(name) is None
     except (ImportError, ValueError, AttributeError):  # it is there, in an odd way
@@ -89,7 +86,7 @@ def absent(name: str) -> bool:
 
 
 def registers(names: list[str]) -> bool:
-    """Whether a module is an installed package that depends on Gymnasium, and may register ids."""
+    """True if a module is an installed package that depends on Gymnasium, and may register ids."""
     try:
         home = metadata.distribution(names[0])
     except (metadata.PackageNotFoundError, ValueError):
@@ -100,7 +97,7 @@ def registers(names: list[str]) -> bool:
 
 
 def defines(names: list[str], source: Path, name: str, *kinds: type, depth: int = 5) -> bool:
-    """Whether a module defines `name`, or imports it from one of its package that does."""
+    """True if a module defines `name`, or imports it from one of its package that does."""
     try:
         tree = ast.parse(source.read_bytes(), str(source))
     except SyntaxError as error:

@@ -77,10 +77,8 @@ def check(node: Any, near: Path | None = None) -> None:
         try:
             if not f".{key}".endswith(f".{TARGET}"):
                 _judge(name, near)
-            elif str(name).startswith(OURS):
-                part_class(name)
             else:
-                _source(name, near)
+                (part_class if str(name).startswith(OURS) else _source)(name, near)
         except ValueError as error:
             raise UsageError(f"{printable(key)}={printable(name)[:SHOWN]}: {error}") from error
 
@@ -101,12 +99,12 @@ def part_class(target: Any, near: Path | None = None) -> Any:
         found = getattr(home, name)
     except FAULTS as error:  # whatever the user's module does
         raise ValueError(user_line(error) or f"cannot be imported ({error})") from error
-    if not isinstance(found, type) or Path(str(home.__file__)).resolve() != source:
-        raise ValueError(OTHER)
-    if module.startswith(OURS) and not (is_dataclass(found) and found.__module__ == module):
-        raise ValueError(NONE)
-    if found.__module__.partition(".")[0] != module.partition(".")[0]:
-        raise ValueError(OTHER)
+    kept = found.__module__ if isinstance(found, type) else ""  # where the class is written
+    sound = bool(kept) and kept.partition(".")[0] == module.partition(".")[0]
+    if ours := module.startswith(OURS):
+        sound = kept == module and is_dataclass(found)
+    if not sound or Path(str(home.__file__)).resolve() != source:
+        raise ValueError(NONE if ours else OTHER)
     return found
 
 
@@ -133,19 +131,18 @@ def _made(node: Any, near: Path | None, where: str) -> Any:
         return kind(**fields)
     except FieldError as error:
         raise (error.at(where) if where else error) from None
-    except ValueError:
-        raise
     except FAULTS as error:  # such as a field that it does not have
+        if isinstance(error, ValueError):
+            raise
         raise ValueError(user_line(error) or str(error)) from error
 
 
 def _source(target: Any, near: Path | None) -> Path:
     """The file of the module of a `_target_`; ValueError if it names no part."""
     *names, name = str(target).split(".")
-    if not names and ":" in name:  # as in env.make
-        raise ValueError(f"write {name.replace(':', '.')}")
-    if not (names and all(each.isidentifier() for each in (*names, name))):
-        raise ValueError(OTHER)
+    if not (names and all(word.isidentifier() for word in (*names, name))):
+        as_in_make = not names and ":" in name
+        raise ValueError(f"write {name.replace(':', '.')}" if as_in_make else OTHER)
     if names[0] == "hybrid_rl":
         return _ours(names[1:])
     source = modules.theirs(names, near)
@@ -179,11 +176,10 @@ def _judge(text: str, near: Path | None) -> None:
 
 def _ours(names: list[str], rooms: Collection[str] = PART_FOLDERS) -> Path:
     """The file of the module hybrid_rl.NAMES, which must lie in one of `rooms`."""
-    if len(names) < 2 or names[0] not in rooms:
-        raise ValueError(NONE)
-    for parent in (PACKAGE, PACKAGE.parent) if names[0] == "envs" else (PACKAGE,):
+    known = len(names) > 1 and names[0] in rooms
+    for parent in (PACKAGE, PACKAGE.parent) if known else ():  # envs/ may stand beside the package
         path = parent.joinpath(*names)
         for source in (path.with_suffix(".py"), path / "__init__.py"):  # a part may be a folder
-            if source.is_file():
+            if source.is_file() and (parent == PACKAGE or names[0] == "envs"):
                 return source.resolve()
     raise ValueError(NONE)

@@ -25,7 +25,7 @@ from hybrid_rl.core.lifting import lift
 from hybrid_rl.core.optimisers import adamw
 from hybrid_rl.fields import Count, Inside, NotNegative, Positive, Share, part
 from hybrid_rl.protocols import Demonstrations, LearnedPolicy, Model
-from hybrid_rl.types import Batch, Params, Spec
+from hybrid_rl.types import Batch, Params, PyTree, Spec
 
 
 @struct.dataclass
@@ -34,7 +34,7 @@ class CloningState:
 
     policy: Any  # what the gradient steps change
     optimiser: Any
-    average: Any = None  # of `policy` over the steps; None: `policy` itself acts
+    average: PyTree = None  # of `policy` over the steps; None: `policy` itself acts
 
 
 @part

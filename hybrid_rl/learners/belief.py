@@ -29,7 +29,7 @@ class BeliefLearner:
 
     def check(self, decisions: int) -> None:
         """Raise ValueError if the belief has no room for the measurements of an episode."""
-        check: Any = getattr(self.belief, "check", None)
+        check = getattr(self.belief, "check", None)
         if check is not None:
             check(decisions // self.every)
 

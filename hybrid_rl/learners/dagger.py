@@ -119,7 +119,7 @@ class DAgger:
 
     def _no_evidence(self, policy: Any, spec: Spec) -> Any:
         """Zeros in the shape of what the target sums over the labels."""
-        evidence: Any = getattr(self.target, "evidence", None)
+        evidence = getattr(self.target, "evidence", None)
         if evidence is None:
             return None
         shapes = jax.eval_shape(evidence, Params(policy=policy), jnp.zeros(spec.obs))
@@ -246,12 +246,12 @@ class DAgger:
 
     def _sum(self, state: DAggerState, params: Params, key: Array) -> DAggerState:
         """The state with the running mean of the target's evidence, over a batch of labels."""
-        if state.evidence is None:
+        evidence = getattr(self.target, "evidence", None)
+        if state.evidence is None or evidence is None:
             return state
-        target: Any = self.target
         params = params._replace(policy=state.policy)
         x = labels.draw(state.labels, self.batch_size, key)[0]
-        each = jax.vmap(lambda x: target.evidence(params, x))(x)
+        each = jax.vmap(lambda x: evidence(params, x))(x)
         rate = jnp.maximum(1 / state.decisions, labels.RATE)
 
         def mean(old: Array, each: Array) -> Array:

@@ -20,7 +20,7 @@ from jax import Array
 
 from hybrid_rl.core import least_squares
 from hybrid_rl.fields import Count, FieldError, Natural, Positive, part
-from hybrid_rl.protocols import LatestLearner, LinearModel
+from hybrid_rl.protocols import Learner, LinearModel
 from hybrid_rl.types import Batch, Params, Spec
 
 CHUNK = 128  # decisions that the regression takes at once
@@ -54,7 +54,7 @@ class EmbeddingLearner:
     """
 
     model: LinearModel
-    regulator: LatestLearner | None = None  # solves for the policy after each fit
+    regulator: Learner | None = None  # solves for the policy after each fit
     interval: int = 200  # decisions of an iteration
     fit: Literal["least_squares", "adam"] = "least_squares"  # of K; adam: as printed
     window: Count = 5  # H [decisions]
@@ -106,7 +106,8 @@ class EmbeddingLearner:
 
         The loss is the squared error, before the fit, of these decisions' predictions.
         """
-        before: Any = params.decisions
+        before = params.decisions
+        assert before is not None  # in training
         total = before + len(batch.reward)
         ended = jnp.maximum(batch.terminated, batch.truncated)
         new = Decisions(batch.obs, batch.action, ended, batch.next_obs)

@@ -52,7 +52,7 @@ class RegulatorLearner:
     owns: ClassVar[tuple[str, ...]] = ("policy",)
 
     def __post_init__(self) -> None:
-        if self.thompson < 0 or (self.thompson and not hasattr(self.model, "draw_model")):
+        if self.thompson < 0 or (self.thompson and getattr(self.model, "draw_model", None) is None):
             words = "must be 0 or more; above 0 only with a linear model"
             raise FieldError(self, "thompson", words)
 
@@ -81,10 +81,9 @@ class RegulatorLearner:
         self, state: SolutionState, params: Params, batch: Batch, key: Array
     ) -> tuple[SolutionState, dict[str, Array]]:
         """The solution for the model as it is; the decisions are not used. The key is consumed."""
-        model: Any = params.model
-        if self.thompson:
-            linear: Any = self.model
-            model = linear.draw_model(model, self.thompson, key)
+        model, drawn = params.model, getattr(self.model, "draw_model", None)
+        if drawn is not None and self.thompson:
+            model = drawn(model, self.thompson, key)
         solved = self.solve(model, state.policy)
         finite = jnp.all(jnp.array([jnp.all(jnp.isfinite(leaf)) for leaf in solved.values()]))
         policy = {name: jnp.where(finite, solved[name], old) for name, old in state.policy.items()}

@@ -22,7 +22,7 @@ from jax import Array
 from hybrid_rl.core import statistics
 from hybrid_rl.core.lifting import check_coordinates
 from hybrid_rl.fields import FILLED, FieldError, part
-from hybrid_rl.networks import MLP, Activation, LayerNorm, Widths
+from hybrid_rl.networks import MLP, Activation, LayerNorm, Widths, apply
 from hybrid_rl.types import Spec
 
 
@@ -55,7 +55,7 @@ class Gaussian:
         net = self._net(spec.obs)
         size, log_std = len(self._inputs(jnp.zeros(spec.obs))), jnp.zeros(spec.obs)
         if self.state_noise:
-            log_std: Any = net.init(jax.random.fold_in(key, 1), jnp.zeros(size))
+            log_std = net.init(jax.random.fold_in(key, 1), jnp.zeros(size))
         return {
             "weights": {"net": net.init(key, jnp.zeros(size + spec.act)), "log_std": log_std},
             "state": statistics.init(spec.obs),
@@ -77,7 +77,7 @@ class Gaussian:
     def change(self, params: dict[str, Any], x: Array, u: Array) -> Array:
         """Predicted change [n] of x [n] under u [m], in running standard deviations."""
         inputs = jnp.concatenate([self._inputs(statistics.normalise(params["state"], x)), u])
-        out: Any = self._net(x.shape[-1]).apply(params["weights"]["net"], inputs)
+        out = apply(self._net(x.shape[-1]), params["weights"]["net"], inputs)
         if self.predict == "change":
             return out
         after = statistics.denormalise(params["state"], out)
@@ -85,10 +85,10 @@ class Gaussian:
 
     def std(self, params: dict[str, Any], x: Array) -> Array:
         """s [n] of the change at x [n], in running standard deviations."""
-        log_std: Any = params["weights"]["log_std"]
+        log_std = params["weights"]["log_std"]
         if self.state_noise:
             inputs = self._inputs(statistics.normalise(params["state"], x))
-            log_std = self._net(x.shape[-1]).apply(log_std, inputs)
+            log_std = apply(self._net(x.shape[-1]), log_std, inputs)
         std = jnp.exp(jnp.clip(log_std, self.log_std_min, self.log_std_max))
         if self.predict == "change":
             return std

@@ -30,9 +30,6 @@ class Koopman:
         """Features, K [n, r] = [I 0] and its "spread" [r, r]. The key is consumed."""
         features = self.features.init(key, spec)
         z = jax.eval_shape(self.features, features, jnp.zeros(spec.obs))
-        if getattr(z, "ndim", None) != 1:
-            got = list(z.shape) if hasattr(z, "shape") else f"a {type(z).__name__}"
-            raise ValueError(f"features: z must be one array [n], not {got}; jnp.stack makes one")
         n = z.size
         if max(self.products, default=0) >= n:
             raise ValueError(f"model.products={list(self.products)}: x has entries 0 to {n - 1}")

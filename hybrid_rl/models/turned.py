@@ -12,7 +12,7 @@ Source: frames that move with the state make any function equivariant (Puny et a
 Averaging, section 2, with one frame); as a model of dynamics our choice.
 """
 
-from typing import Annotated, Any, Protocol, cast
+from typing import Annotated, Any, Protocol
 
 import jax
 from jax import Array
@@ -75,10 +75,14 @@ class Turned:
 
         return self.model.observe(params, *jax.vmap(one)(obs, next_obs))
 
+    @property
+    def _ensemble(self) -> Any:
+        """The model, where it is an ensemble."""
+        return self.model
+
     def rank(self, params: Any, losses: Array) -> Any:
         """Parameters whose elites are the members with the least of `losses` [members]."""
-        ensemble: Any = self.model
-        return ensemble.rank(params, losses)
+        return self._ensemble.rank(params, losses)
 
     def step(self, params: Any, x: Array, u: Array) -> Array:
         """Mean of the next planning state [n]."""
@@ -92,15 +96,14 @@ class Turned:
 
     def predictions(self, params: Any, x: Array, u: Array) -> tuple[Array, Array, Array]:
         """Mean of the next planning state [n], `disagreement` [n], every member's [members, n]."""
-        (a, *at), ensemble = self._into(x, u), cast(Any, self.model)
-        mean, disagreement, each = ensemble.predictions(params, *at)
+        a, *at = self._into(x, u)
+        mean, disagreement, each = self._ensemble.predictions(params, *at)
         turned = self.world.turned
         return turned(mean, a), disagreement, jax.vmap(turned, (0, None))(each, a)
 
     def disagreement(self, params: Any, x: Array, u: Array) -> Array:
         """Standard deviation [n] of the members in the frame, in running std of the change."""
-        ensemble: Any = self.model
-        return ensemble.disagreement(params, *self._into(x, u)[1:])
+        return self._ensemble.disagreement(params, *self._into(x, u)[1:])
 
     def loss(self, params: Any, obs: Array, action: Array, next_obs: Array) -> Array:
         """Mean loss [] of transitions [members * B, ...]."""

@@ -103,6 +103,11 @@ def outputs(params: Any) -> int:
     return layers[f"Dense_{len(layers) - 1}"]["bias"].shape[-1]
 
 
+def apply(net: nn.Module, params: Any, x: Array) -> Any:
+    """Outputs [..., out] of a network at x [..., in]."""
+    return net.apply(params, x)
+
+
 def ensemble_init(net: nn.Module, key: Array, members: int, x: Array) -> Any:
     """Parameters of `members` independent copies of `net`, stacked on axis 0; x [d] gives sizes."""
     return jax.vmap(lambda k: net.init(k, x))(jax.random.split(key, members))

@@ -11,12 +11,10 @@ from hybrid_rl.types import Spec
 
 def require(name: str, model: Model, spec: Spec) -> None:
     """Raise ValueError unless `model`, a field of the part `name`, learns by gradients."""
-    shapes: Any = jax.eval_shape(lambda: model.init(jax.random.key(0), spec))
+    shapes = jax.eval_shape(lambda: model.init(jax.random.key(0), spec))
     if not (isinstance(shapes, dict) and "net" in shapes.get("weights", ())):
-        raise ValueError(
-            f"{name}.model={type(model).__name__}: has no weights whose information could be "
-            "measured; choose model=gaussian"
-        )
+        line = "has no weights whose information could be measured; choose model=gaussian"
+        raise ValueError(f"{name}.model={type(model).__name__}: {line}")
 
 
 def of(params: Any) -> Any:

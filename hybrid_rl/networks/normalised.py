@@ -70,11 +70,10 @@ def init(net: NormalisedNet, key: Array, size: int) -> dict[str, Any]:
     return {"weights": constrained(made["params"]), "statistics": made["batch_stats"]}
 
 
-def apply(net: NormalisedNet, params: dict[str, Any], x: Array) -> Array:
+def apply(net: NormalisedNet, params: dict[str, Any], x: Array) -> Any:
     """Outputs [..., out] at x [..., d], by the running statistics."""
     read = {"params": params["weights"], "batch_stats": params["statistics"]}
-    y: Any = net.apply(read, x, False)
-    return y
+    return net.apply(read, x, False)
 
 
 def apply_in_batch(

@@ -19,19 +19,17 @@ from jax.lax import Precision
 
 OF_DEVICE = {"auto": {"gpu": "tf32"}, "mixed": {"gpu": "bf16"}}  # by kind of device, else float32
 PRECISIONS = ("auto", "mixed", "bf16", "tf32", "float32")
-_CHOSEN = jax.make_user_context("auto")  # a part of JAX's keys of traced programs
-
-using = _CHOSEN  # with using("float32"): ...
+using = jax.make_user_context("auto")  # a part of JAX's keys of traced programs
 
 
 def choose(name: str) -> None:
     """Networks compute in one of PRECISIONS from now on, in every thread."""
-    _CHOSEN.set_global(name)
+    using.set_global(name)
 
 
 def current() -> str:
     """The precision of networks in this process: bf16, tf32 or float32."""
-    name = _CHOSEN.value
+    name = using.value
     return OF_DEVICE[name].get(jax.default_backend(), "float32") if name in OF_DEVICE else name
 
 

@@ -34,7 +34,7 @@ from hybrid_rl.training.agent import AgentState
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Loop, put
 from hybrid_rl.training.metrics import outcome
-from hybrid_rl.types import Clock, EnvState, Params
+from hybrid_rl.types import Clock, EnvState, Params, PyTree
 
 RESUMED = "the environment begins a new episode, as its own state is in no checkpoint: the "
 RESUMED += "decisions after this one differ from those of a run without the interruption"
@@ -46,7 +46,7 @@ class HostLoop(Loop):
 
     notes = (RESUMED,)
     early: bool = field(init=False)  # learning without the outcome of the newest decision
-    rows: Any = field(default=None, init=False)  # shapes [stride, S, ...] of the metrics of a call
+    rows: PyTree = field(default=None, init=False)  # shapes [stride, S, ...] of a call's metrics
 
     def __post_init__(self) -> None:
         """Find out whether all learners can learn early."""

@@ -23,14 +23,14 @@ from hybrid_rl.outside.row_log import row_type
 from hybrid_rl.training.agent import AgentState
 from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Loop, put
 from hybrid_rl.training.metrics import outcome
-from hybrid_rl.types import Clock, Params, Transition
+from hybrid_rl.types import Clock, Params, PyTree, Transition
 
 
 @dataclass
 class RowLoop(Loop):
     """The programs of one learner of rows."""
 
-    rows: Any = field(default=None, init=False)  # shapes [stride, S, ...] of the metrics of a call
+    rows: PyTree = field(default=None, init=False)  # shapes [stride, S, ...] of a call's metrics
 
     def __post_init__(self) -> None:
         if (given := (len(self.seeds), self.agent.num_envs)) != (1, 1):

@@ -27,6 +27,7 @@ from hybrid_rl.networks import (
     Activation,
     Perceptron,
     Widths,
+    apply,
     perceptron,
     side_by_side,
 )
@@ -73,10 +74,8 @@ class Deterministic:
             within = {name: layer for name, layer in weights.items() if layer is not last}
             *hidden, width = self.hidden
             net = MLP(hidden, width, self.activation)
-            inner: Any = net.apply({"params": within}, x)
-            x = ACTIVATIONS[self.activation](inner)
-        mu: Any = MLP((), last["bias"].size).apply({"params": {"Dense_0": last}}, x)
-        return x, mu
+            x = ACTIVATIONS[self.activation](apply(net, {"params": within}, x))
+        return x, apply(MLP((), last["bias"].size), {"params": {"Dense_0": last}}, x)
 
     def perceptron(self, params: dict[str, Any], spec: Spec) -> Perceptron:
         """The policy as plain arrays."""

@@ -21,7 +21,7 @@ from hybrid_rl.core import statistics
 from hybrid_rl.core.squashing import Squashed
 from hybrid_rl.data import archive
 from hybrid_rl.fields import FieldError, part
-from hybrid_rl.networks import MLP, Activation, Perceptron, Widths, outputs, perceptron
+from hybrid_rl.networks import MLP, Activation, Perceptron, Widths, apply, outputs, perceptron
 from hybrid_rl.protocols import Env
 from hybrid_rl.types import Spec
 
@@ -68,12 +68,12 @@ class TanhGaussian(Squashed):
         if self.normalise:
             x = statistics.normalise(jax.lax.stop_gradient(params["state"]), x)
         if self.log_std_activation is None:
-            both: Any = self._net(outputs(params["trunk"])).apply(params["trunk"], x)
+            both = apply(self._net(outputs(params["trunk"])), params["trunk"], x)
             mu, log_std = jnp.split(both, 2, axis=-1)
         else:
             m = outputs(params["mean"])
-            mu = self._net(m).apply(params["mean"], x)
-            log_std: Any = self._net(m, self.log_std_activation).apply(params["log_std"], x)
+            mu = apply(self._net(m), params["mean"], x)
+            log_std = apply(self._net(m, self.log_std_activation), params["log_std"], x)
         return mu, jnp.exp(jnp.clip(log_std, self.log_std_min, self.log_std_max))
 
     def perceptron(self, params: dict[str, Any], spec: Spec) -> Perceptron:

@@ -15,7 +15,6 @@ from hybrid_rl.protocols.environments import (
     Measured,
     MeasuredEnv,
     Rewarded,
-    RewardedEnv,
 )
 from hybrid_rl.protocols.learned import (
     Belief,
@@ -34,7 +33,6 @@ from hybrid_rl.protocols.learned import (
 )
 from hybrid_rl.protocols.learning import (
     Demonstrations,
-    LatestLearner,
     Learner,
     Schedule,
     UniformLearner,
@@ -55,7 +53,6 @@ __all__ = [
     "Goal",
     "GoalPolicy",
     "InformedBelief",
-    "LatestLearner",
     "LearnedPolicy",
     "Learner",
     "LinearModel",
@@ -67,7 +64,6 @@ __all__ = [
     "Proposal",
     "Reward",
     "Rewarded",
-    "RewardedEnv",
     "Schedule",
     "StabilizingPolicy",
     "Target",

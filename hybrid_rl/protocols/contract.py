@@ -17,29 +17,23 @@ import re
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import fields, is_dataclass
+from dataclasses import dataclass, field, fields, is_dataclass
 from functools import partial
-from numbers import Real
-from typing import Any, TypeVar, get_args
+from typing import Any, NoReturn, TypeVar, get_args
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jax.experimental import checkify
 
-from hybrid_rl.errors import PartError, SourceOf, UsageError
-from hybrid_rl.types import EnvState, Path
+from hybrid_rl.errors import PartError, SourceOf
+from hybrid_rl.types import EnvState, Path, Spec
 
 Thing = TypeVar("Thing")
 TERM = re.compile(r"(\w+)( \[(.*?)\])?")
 OTHERS = {"hybrid_rl", "jax", "jaxlib", *sys.stdlib_module_names}  # packages
-SIZES = {"B": 3, "T": 5}  # of what no part says
 FORM = {"obs": "o", "reward": "", "terminated": "", "truncated": ""}  # of an EnvState
 FLAGS = "terminated", "truncated"
-REMEDIES = {  # of a number that is none
-    **{"reward": "sum it, or take its entry; a whole number is no float"},
-    **dict.fromkeys(FLAGS, "write a comparison, or jnp.zeros((), bool)"),
-}
 DRAWN = (
     "gives other numbers when it is traced again: what NumPy or Python draws is a constant of the "
     "compiled program; use jax.random, with a key"
@@ -57,7 +51,7 @@ def gives(signature: str) -> Callable[[Thing], Thing]:
 
 
 def may(**signatures: str) -> Callable[[Thing], Thing]:
-    """Say what the methods take and return that a part of this protocol need not have."""
+    """Say what the methods take and return that a part of this protocol may leave out."""
 
     def mark(protocol: Any) -> Any:
         protocol._may = signatures
@@ -66,108 +60,105 @@ def may(**signatures: str) -> Callable[[Thing], Thing]:
     return mark
 
 
+@dataclass
 class Contract:
-    """The contract of one part: values and sizes by their names in signatures."""
+    """The contract of one part: what is known by the names in the signatures of its protocol."""
 
-    def __init__(
-        self,
-        part: Any,
-        protocol: Any,
-        values: Mapping[str, Any],
-        error: type[PartError] = PartError,
-        owner: Any = None,
-        field: str = "",
-    ) -> None:
-        self.part, self.protocol, self.error = part, protocol, error
-        self.owner, self.field = owner, field  # that holds it
-        self.source = SourceOf(part, error)
-        self.values, self.sizes, self.given = dict(values), dict(SIZES), dict.fromkeys(values, "")
-        spec = values["spec"]
-        self.sizes |= {"o": spec.obs, "m": spec.act, "n": spec.n}
-        self.values.setdefault("key", jax.eval_shape(lambda: jax.random.key(0)))
+    part: object
+    protocol: type
+    spec: Spec
+    error: type[PartError] = PartError
+    owner: object = None  # the part that holds it, in a field
+    name: str = ""  # of that field
+    values: dict[str, Any] = field(default_factory=dict)  # by name
+
+    def __post_init__(self) -> None:
+        self.source = SourceOf(self.part, self.error)
+        self.sizes = {"T": 5, "o": self.spec.obs, "m": self.spec.act, "n": self.spec.n}
+        key = jax.eval_shape(lambda: jax.random.key(0))
+        self.values = {"key": key, "spec": self.spec, **self.values}
+        self.given: dict[str, str] = {}  # the method that gave a value
 
     def check_members(self) -> None:
-        """Raise PartError for a class, or for a member that the part lacks or has otherwise."""
-        if isinstance(self.part, type):
-            line = f"{self.part.__module__}: {self.part.__name__} is a class"
-            raise self.error(f"{line}; give {self.part.__name__}()")
-        lacks = [name for name in members(self.protocol) if getattr(self.part, name, self) is self]
-        if lacks and self.field and not of_user(self.part):  # of the library: another choice
-            line = f"has no {', '.join(lacks)}, which {type(self.owner).__name__} needs"
-            raise UsageError(f"{self.field}={type(self.part).__name__}: {line}; choose another one")
+        """Raise PartError for a class, or for a member that is missing or takes other arguments."""
+        check_instance(self.part, self.error)
+        needs = f", which {type(self.owner).__name__}.{self.name} needs" if self.name else ""
         for name, member in members(self.protocol).items():
+            has, remedy = getattr(self.part, name, self), f"see protocols.{self.protocol.__name__}"
             if inspect.isfunction(member):
-                self.source.takes(name, *[*inspect.signature(member).parameters][1:])
-            elif name in lacks:
-                line = f"has no {name}; see protocols.{self.protocol.__name__}"
-                raise self.error(f"{self.source.at()} {line}")
+                names = [*inspect.signature(member).parameters]
+                form = f"{name}({', '.join(names)})"
+                remedy = f"write def {form}"
+                if callable(has) and not _takes(has, len(names) - 1):
+                    self.refuse(name, f"must be {form}")
+            if has is self:
+                raise self.error(f"{self.source.at()} has no {name}{needs}; {remedy}")
 
-    def check(self, *names: str) -> "Contract":
-        """Raise PartError for a method that gives something else; of these names, or all."""
+    def check(self) -> dict[str, Any]:
+        """Raise PartError for a method that gives something else; the traces by method.
+
+        A method is left out if a value that it takes is not known.
+        """
         self.check_members()
+        traces = {}
         for name, signature in signatures(self.protocol).items():
-            takes = terms(signature.split("->")[0])
-            known = all(type(size) is int for _, of in takes for size in self._shape(of or ""))
-            if known and name in (names or {name}) and getattr(self.part, name, None) is not None:
-                self.trace(name, signature)
-        return self
+            known = all(self._known(*term) for term in terms(signature.split("->")[0]))
+            if known and getattr(self.part, name, None) is not None:
+                traces[name] = self.trace(name)
+        return traces
 
-    def tried(self) -> None:
-        """Raise PartError for an index out of range in what the user's part pays."""
+    def check_examples(self) -> None:
+        """As `check`, and what the user's pays for two random decisions, for `check_indices`."""
+        self.check()
         if of_user(self.part):
-            rng, spec = np.random.default_rng(0), self.values["spec"]
-            x, u = (rng.normal(size=(2, size)).astype(np.float32) for size in (spec.obs, spec.act))
+            rng = np.random.default_rng(0)
+            x, u = (rng.normal(size=(2, n)).astype("f") for n in (self.spec.obs, self.spec.act))
             (name,) = signatures(self.protocol)
             check_indices(self.source, name, (x[0], u[0], x[1]), (x[1], u[1], x[0]))
 
-    def trace(self, name: str, signature: str, twice: bool = False) -> Any:
-        """Compare what a method gives, traced by JAX; the trace.
-
-        twice: traced again, it must be the same program.
-        """
-        takes, returns = map(terms, signature.split("->"))
-        arguments = [self.value(*term) for term in takes if term[0] != "spec"]
+    def trace(self, name: str) -> Any:
+        """Compare what a method gives, traced twice by JAX, which must be the same program."""
+        takes, returns = map(terms, signatures(self.protocol)[name].split("->"))
+        arguments = [self._value(*term) for term in takes]
+        fixed = tuple(i for i, (of, _) in enumerate(takes) if of == "spec")
 
         def call(*given: Any) -> Any:
-            left = iter(given)
-            whole = [self.values["spec"] if of == "spec" else next(left) for of, _ in takes]
-            result = getattr(self.part, name)(*whole)
-            if len(returns) == 1:
-                result = (result,)
-            elif not isinstance(result, tuple) or len(result) != len(returns):
-                got = f"a tuple of {len(result)}" if isinstance(result, tuple) else words(result)
-                must = ", ".join(of for of, _ in returns)
-                self.refuse(name, f"returned {got}; it must be ({must})")
-            result = tuple(map(self._measured, result))
-            for (of, sizes), value in zip(returns, result, strict=True):
-                self._judge(name, of, sizes, value)
-            return result
+            result = getattr(self.part, name)(*given)
+            return jax.tree.map(self._of_path, result, is_leaf=inspect.isfunction)
 
-        # a world may be of another library; two functions: neither trace is kept
-        ranks = "allow" if ("env", None) in returns else "raise"
-        programs = [jax.jit(partial(call)) for _ in range(1 + twice)]
-        with jax.numpy_rank_promotion(ranks):
-            traced = [self.source.blamed(name, each.trace, *arguments) for each in programs]
-        if len({program_text(each) for each in traced}) > 1:
+        # two functions: neither trace is kept
+        programs = [jax.jit(partial(call), static_argnums=fixed) for _ in range(2)]
+        first, again = (self.source.blamed(name, each.trace, *arguments) for each in programs)
+        if program_text(first) != program_text(again):
             self.refuse(name, DRAWN)
-        for (of, sizes), value in zip(returns, traced[0].out_info, strict=True):
-            if of != "metrics" and (sizes is None or of not in self.values):
-                self._bind(name, of, value)
-        return traced[0]
+        result = first.out_info
+        if len(returns) == 1:
+            result = (result,)
+        elif not isinstance(result, tuple) or len(result) != len(returns):
+            must = ", ".join(of for of, _ in returns)
+            self.refuse(name, f"returned {words(result)}; it must be ({must})")
+        for (of, sizes), value in zip(returns, result, strict=True):
+            self._judge(name, of, sizes, value)
+        return first
 
-    def value(self, name: str, sizes: str | None = None) -> Any:
+    def refuse(self, method: str, line: str) -> NoReturn:
+        """Raise PartError about a method."""
+        raise self.error(f"{self.source.at(method)}: {line}")
+
+    def _known(self, name: str, sizes: str | None) -> bool:
+        if sizes is None:
+            return name in ("x", "path") or name in self.values
+        return all(isinstance(size, int) for size in self._shape(sizes))
+
+    def _value(self, name: str, sizes: str | None) -> Any:
         """The value of an argument: one that is known, or floats of these sizes."""
         if name == "path":
-            x, T = self.value("x"), self.sizes["T"]
+            x, T = self._value("x", None), self.sizes["T"]
             x = jax.tree.map(lambda leaf: jax.ShapeDtypeStruct((T + 1, *leaf.shape), leaf.dtype), x)
-            return Path(x, self.value("u", "T, m"))
+            return Path(x, self._value("u", "T, m"))
         if sizes is None and name in self.values:
             return self.values[name]
         return jax.ShapeDtypeStruct(self._shape("n" if sizes is None else sizes), jnp.float32)
-
-    def refuse(self, method: str, line: str) -> None:
-        """Raise PartError about a method."""
-        raise self.error(f"{self.source.at(method)}: {line}")
 
     def _shape(self, sizes: str) -> tuple[int | str, ...]:
         """[T+1, n] in numbers; a letter without one stays."""
@@ -178,78 +169,64 @@ class Contract:
             shape.append(number + int(more) if plus and isinstance(number, int) else number)
         return tuple(shape)
 
-    def _measured(self, result: Any) -> Any:
+    def _of_path(self, result: Any) -> Any:
         """A result; of a function of a path what it gives."""
         if not inspect.isfunction(result):
             return result
-        return result(
-            jax.tree.map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), self.value("path"))
-        )
+        path = self._value("path", None)
+        return result(jax.tree.map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), path))
 
     def _judge(self, method: str, name: str, sizes: str | None, value: Any) -> None:
         """Raise PartError for a returned value of another shape or type."""
+        if name == "metrics":
+            numbers = isinstance(value, Mapping)
+            numbers = numbers and all(of.endswith("[]") for of in leaves(value).values())
+            if not numbers:
+                got = leaves(value) if isinstance(value, Mapping) else words(value)
+                self.refuse(method, f"returned metrics {got}; it must be a dict of numbers")
+            return
         if name == "env":
-            self._judge_env(method, value)
-        elif name == "metrics":
-            self._judge_metrics(method, value)
+            if not isinstance(value, EnvState):
+                self.refuse(method, f"returned {words(value)}; it must be an EnvState")
+            for part, form in (*FORM.items(), ("metrics", None)):
+                self._judge(method, part, form, getattr(value, part))
         elif sizes is not None:
-            for size in (size for size in sizes.split(", ") if size.isalpha()):
-                if size not in self.sizes and getattr(value, "ndim", 0) == 1 + sizes.count(","):
-                    self.sizes[size] = value.shape[sizes.split(", ").index(size)]
-            self._judge_array(method, name, self._shape(sizes), value)
-
-    def _judge_array(
-        self, method: str, name: str, shape: tuple[int | str, ...], value: Any
-    ) -> None:
-        kind = jnp.bool_ if name in FLAGS else jnp.floating
-        if type(value) is float and not shape and name not in FLAGS:
-            return
-        if is_array(value) and value.shape == shape and jnp.issubdtype(value.dtype, kind):
-            return
-        must = f"it must be {'bool' if name in FLAGS else 'float32'}[{', '.join(map(str, shape))}]"
-        remedy = REMEDIES.get(name)
-        if name == "obs":
-            size = jnp.size(value) if is_array(value) else 0
-            must += f", as spec.obs is {shape[0]}"
-            remedy = f"return {shape[0]} numbers, or write Spec(obs={size}, ...)"
-        must += f": {remedy}" if remedy else ""
-        self.refuse(method, f"returned {name} {words(value)}; {must}")
-
-    def _judge_metrics(self, method: str, metrics: Any) -> None:
-        if not isinstance(metrics, Mapping):
-            self.refuse(method, f"returned metrics {words(metrics)}; it must be a dict of numbers")
-        for name, value in metrics.items():
-            if not isinstance(value, Real) and getattr(value, "shape", None) != ():
-                self.refuse(method, f"metric {name} is {words(value)}; it must be one number")
-
-    def _judge_env(self, method: str, state: Any) -> None:
-        """Raise PartError for anything but an EnvState of the spec."""
-        if not isinstance(state, EnvState):
-            got = f"a tuple of {len(state)}, as Gymnasium's do" if isinstance(state, tuple) else ""
-            self.refuse(method, f"returned {got or words(state)}; it must be an EnvState")
-        for name, sizes in FORM.items():
-            self._judge_array(method, name, self._shape(sizes), getattr(state, name))
-        if not isinstance(state.info, Mapping):
-            self.refuse(method, f"returned info {words(state.info)}; it must be a dict")
-        self._judge_metrics(method, state.metrics)
-
-    def _bind(self, method: str, name: str, value: Any) -> None:
-        """Keep a value by its name; raise PartError if it was another one before."""
-        if name not in self.values:
+            self._judge_array(method, name, sizes, value)
+        if sizes is None and name in self.values:
+            self._compare(method, name, value)
+        elif name not in self.values:
             self.values[name], self.given[name] = value, method
-            return
+
+    def _judge_array(self, method: str, name: str, sizes: str, value: Any) -> None:
+        shape = getattr(value, "shape", None)
+        if shape is not None and len(shape) == len(self._shape(sizes)):
+            new = {letter: n for letter, n in zip(sizes.split(", "), shape, strict=False) if letter}
+            self.sizes = {letter: n for letter, n in new.items() if letter.isalpha()} | self.sizes
+        must, kind = self._shape(sizes), jnp.bool_ if name in FLAGS else jnp.floating
+        if shape != must or not jnp.issubdtype(value.dtype, kind):
+            must = f"{'bool' if name in FLAGS else 'float32'}[{', '.join(map(str, must))}]"
+            must += f", as spec.obs is {self.spec.obs}" if name == "obs" else ""
+            self.refuse(method, f"returned {name} {words(value)}; it must be {must}")
+
+    def _compare(self, method: str, name: str, value: Any) -> None:
+        """Raise PartError if the value of this name was another one before."""
         first = self.values[name]
         if isinstance(first, EnvState):  # what of `info` a step leaves out stays
             value = value.replace(info={**first.info, **value.info})
-        one, two = leaves(first), leaves(value)
-        before = self.given[name] or "init"
-        for path in (*one, *two):
-            if one.get(path) != two.get(path):
-                now, then = (of.get(path, "nothing") for of in (two, one))
-                line = f"returned {name}{path} {now}, {before} gave {then}; both must be equal"
-                self.refuse(method, line)
+        then, now = leaves(first), leaves(value)
+        before = self.given.get(name, "init")
+        for path in (*then, *now):
+            if then.get(path) != now.get(path):
+                pair = f"{now.get(path, 'nothing')}, {before} gave {then.get(path, 'nothing')}"
+                self.refuse(method, f"returned {name}{path} {pair}; both must be equal")
         if jax.tree.structure(first) != jax.tree.structure(value):
             self.refuse(method, f"returned {name} of another structure than {before}")
+
+
+def check_instance(part: object, error: type[PartError]) -> None:
+    """Raise `error` for a class, in place of an instance of it."""
+    if isinstance(part, type):
+        raise error(f"{part.__module__}: {part.__name__} is a class; give {part.__name__}()")
 
 
 def terms(text: str) -> list[tuple[str, str | None]]:
@@ -257,7 +234,7 @@ def terms(text: str) -> list[tuple[str, str | None]]:
     return [(name, sizes if sized else None) for name, sized, sizes in TERM.findall(text)]
 
 
-def members(protocol: Any) -> dict[str, Any]:
+def members(protocol: type) -> dict[str, Any]:
     """Name -> method, property or annotation of what a part of this protocol has."""
     found: dict[str, Any] = {}
     for base in reversed(protocol.__mro__):
@@ -266,7 +243,7 @@ def members(protocol: Any) -> dict[str, Any]:
     return {name: of for name, of in found.items() if name[0] != "_" or name == "__call__"}
 
 
-def signatures(protocol: Any) -> dict[str, str]:
+def signatures(protocol: type) -> dict[str, str]:
     """Name -> what a method takes and returns."""
     has = {name: getattr(member, "gives", "") for name, member in members(protocol).items()}
     return {name: text for name, text in has.items() if text} | getattr(protocol, "_may", {})
@@ -278,31 +255,32 @@ def parts(part: Any) -> Iterator[tuple[Any, str, Any, Any]]:
         for inner in part.values() if isinstance(part, dict) else part:
             yield from parts(inner)
     elif is_dataclass(part) and not isinstance(part, type) and not _is_world(part):
-        for field in fields(part):
-            value, kinds = getattr(part, field.name, None), [field.type]
+        for of in fields(part):
+            value, kinds = getattr(part, of.name, None), [of.type]
             for kind in kinds:  # of unions, tuples and annotations, what they are of
                 kinds += get_args(kind)
             known = [kind for kind in kinds if getattr(kind, "_is_protocol", False)]
-            one = value if isinstance(value, list | tuple) else (value,)
-            for inner in value.values() if isinstance(value, Mapping) else one:
+            held = value if isinstance(value, list | tuple) else (value,)
+            for inner in value.values() if isinstance(value, Mapping) else held:
                 if not (inner is None or isinstance(inner, bool | int | float | str)):
-                    yield part, field.name, known[0] if len(known) == 1 else None, inner
+                    yield part, of.name, known[0] if len(known) == 1 else None, inner
                     yield from parts(inner)
 
 
-def _is_world(part: Any) -> bool:
+def _is_world(part: object) -> bool:
     return callable(getattr(part, "reset", None))
 
 
-def of_user(part: Any) -> bool:
+def of_user(part: object) -> bool:
     """Whether the class of a part is of the user's code."""
     kind = part if isinstance(part, type) else type(part)
     return kind.__module__.partition(".")[0] not in OTHERS
 
 
-def has_users(part: Any) -> bool:
-    """Whether a part, or one in it, is of the user's code."""
-    return any(map(of_user, [part, *(inner for _, _, _, inner in parts(part))]))
+def has_users(part: object) -> bool:
+    """True if a part, or one in it, is of the user's code; or one of several parts in a list."""
+    several = part if isinstance(part, list) else [part]
+    return any(map(of_user, [*several, *(inner for _, _, _, inner in parts(part))]))
 
 
 def check_indices(source: SourceOf, method: str, *examples: tuple[Any, ...]) -> None:
@@ -312,24 +290,24 @@ def check_indices(source: SourceOf, method: str, *examples: tuple[Any, ...]) -> 
     wrong one in all of them counts, as one that follows from the state may be meant to be clamped.
     Slices, which stop at the end as NumPy's do, are not found.
     """
-    found: list[Exception] = []
+    found = []
     with suppress(Exception):  # of what checkify cannot transform
         call = getattr(source.object, method)
         checked = jax.jit(checkify.checkify(call, errors=checkify.index_checks))
-        for given in examples:
-            error, _ = checked(*given)
-            try:
-                error.throw()
-            except checkify.JaxRuntimeError as wrong:
-                found.append(wrong)
-    if len(found) == len(examples) and len({*map(str, found)}) == 1:
-        line, cause = str(found[0]).strip().rstrip("."), found[0].__cause__
-        error = IndexError(f"{line}; JAX takes the nearest entry without a word")
-        source.blamed(method, _throw, error.with_traceback(cause and cause.__traceback__))
+        found = [checked(*given)[0].get() for given in examples]
+    if found and found[0] and len({*found}) == 1:
+        line = f"{source.at(method)}: IndexError: {found[0].strip().rstrip('.')}"
+        raise source.error(f"{line}; JAX takes the nearest entry without a word")
 
 
-def _throw(error: Exception) -> None:
-    raise error
+def _takes(method: Callable[..., Any], number: int) -> bool:
+    """Whether a method can be called with so many arguments; yes where Python does not know."""
+    with suppress(ValueError):
+        try:
+            inspect.signature(method).bind(*range(number))
+        except TypeError:
+            return False
+    return True
 
 
 def program_text(traced: Any) -> str:
@@ -339,15 +317,12 @@ def program_text(traced: Any) -> str:
     return re.sub(r" at 0x\w+", "", f"{program}\n{constants}")
 
 
-def is_array(value: Any) -> bool:
-    """Whether a value has a shape and a type."""
-    return None not in (getattr(value, "shape", None), getattr(value, "dtype", None))
-
-
 def words(value: Any) -> str:
     """float32[2], or the kind of a Python value."""
-    if is_array(value):
+    if getattr(value, "dtype", None) is not None:
         return f"{value.dtype}{list(value.shape)}"
+    if isinstance(value, tuple):
+        return f"a tuple of {len(value)}"
     return "None" if value is None else f"a {type(value).__name__}"
 
 

@@ -39,7 +39,8 @@ class Target(Protocol):
 
     One that depends on a teacher's labels so far has `evidence(params, x)`, whose sum over the
     labelled states x [n] it gets as `params.labels.evidence`. One that has `outside(low, high)`,
-    whether all of it lies outside the box [low, high], [v], is refused for such a domain.
+    whether all of it lies outside the box [low, high], [v], is refused for such a domain. One that
+    scores paths has `along(params, path)`, the value [] of measurements on a path [T, v].
     """
 
     @gives("Params, s [v] -> log_density []")

@@ -69,10 +69,6 @@ class Constraint(Protocol):
         """
 
 
-class RewardedEnv(Env, Goal, Protocol):
-    """An environment whose reward is a known function of observations and action."""
-
-
 class MeasuredEnv(Env, Protocol):
     """An environment whose observation has quantities with a name and a unit."""
 
@@ -99,5 +95,5 @@ class AnalyticEnv(BalancedEnv, Protocol):
 # of fields: what a part needs of the environment, which `python -m hybrid_rl.list` shows
 Analytic = Annotated[AnalyticEnv, has("dynamics", "needs an analytic environment")]
 Balanced = Annotated[BalancedEnv, has("equilibrium", "needs an environment with an equilibrium")]
-Rewarded = Annotated[RewardedEnv, has("reward_of", "needs an environment with a known reward")]
+Rewarded = Annotated[Goal, has("reward_of", "needs an environment with a known reward")]
 Measured = Annotated[MeasuredEnv, has("quantities", "needs an environment with `quantities`")]

@@ -22,10 +22,17 @@ class Schedule(Protocol):
         """The factor [] of the learning rates, so many decisions [] into the run."""
 
 
-class _Learner(Protocol):
-    """What both kinds of learners have."""
+class Learner(Protocol):
+    """Data -> parameters.
+
+    A `uniform` learner, UniformLearner, learns from batches of the memory. A `latest` one takes
+    each decision once, with its true next observation: its updates get the transitions [E] of the
+    step that just ended, without delay, from the first decision of the run on, random ones
+    included. It has `every`: decisions of each environment between two updates; 1 uses them all.
+    """
 
     owns: tuple[str, ...]  # fields of `Params` that it learns; that of "model" has a field `model`
+    data: Literal["uniform", "latest"]
 
     @gives("key, spec -> state")
     def init(self, key: Array, spec: Spec) -> PyTree:
@@ -42,29 +49,14 @@ class _Learner(Protocol):
         """The next state, and metrics name -> []; `params` of all learners before the update."""
 
 
-class UniformLearner(_Learner, Protocol):
+class UniformLearner(Learner, Protocol):
     """A learner whose updates get batches [batches * batch_size] of the replay memory.
 
     `obs` and `next_obs` are planning states [B, n] if a model is learned by another learner, and
     `init` gets their size; the agent lifts them.
     """
 
-    data: Literal["uniform"]
     batch_size: int  # transitions of a batch
     batches: int  # batches of one update, concatenated
     updates: float  # per decision
     during_random: bool  # whether it also learns while decisions are random
-
-
-class LatestLearner(_Learner, Protocol):
-    """A learner that takes each decision once, with its true next observation.
-
-    Its updates get the transitions [E] of the step that just ended, without delay, from the
-    first decision of the run on, random ones included.
-    """
-
-    data: Literal["latest"]
-    every: int  # decisions of each environment between two updates; 1: uses them all
-
-
-Learner = UniformLearner | LatestLearner  # data -> parameters

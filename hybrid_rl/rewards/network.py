@@ -36,7 +36,7 @@ class RewardNetwork:
     activation: Activation = "relu"
     normalise: bool = True  # states by their running statistics
     ends: bool = False  # also where episodes end
-    rule: Any = None  # an environment whose `ended` gives the ends; without: they are learned
+    rule: object = None  # an environment whose `ended` gives the ends; without: they are learned
     layer_norm: LayerNorm = False  # of every hidden layer; or shift: without a learned scale
     scale: bool = False  # targets by their running statistics
     members: Count = 1  # networks, whose mean is used

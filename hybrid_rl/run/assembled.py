@@ -43,8 +43,6 @@ def run_of(
     method, in figures; None is the classes of the learners. log_every: None is the default.
     eval_every: None evaluates nothing. checkpoint_every: None saves at the end alone.
     """
-    if name is not None and not re.fullmatch(r"[^/\0]*[^/\0.][^/\0]*", name):
-        raise UsageError(f"name={name}: must be a name that a folder can have")
     defaults: Any = OmegaConf.load(CONF / "train.yaml")
     counts = {"total_steps": total_steps, "num_seeds": num_seeds, "eval_episodes": eval_episodes}
     counts["log_every"] = defaults.log_every if log_every is None else log_every
@@ -94,22 +92,18 @@ def _described(agent: Agent, name: str | None) -> dict[str, Any]:
 
 def _check_same(run: Run, folder: Path) -> tuple[str, ...]:
     """A note if the agent is not the one that config.yaml describes."""
-    path = folder / "config.yaml"
+    path, flaw = folder / "config.yaml", ""
     config: Any = OmegaConf.load(path) if path.exists() else {}
-    if "agent" not in config:
-        line = f'holds the run of a configuration; continue it by train(["resume={folder}"])'
-        raise UsageError(f"run_dir={folder}: {line}")
     made = max(checkpoint.steps(folder / "checkpoints"))
-    if run.config.total_steps < made:
-        line = f"total_steps={run.config.total_steps}: run_dir={folder} has {made}"
-        raise UsageError(f"{line}; it can be raised, not lowered")
     saved = tuple(checkpoint.meta(folder / "checkpoints").get("seeds", ()))
-    if saved != run.seeds:
-        listed = ", ".join(map(str, saved))
-        raise UsageError(
-            f"seed={run.seeds[0]} num_seeds={len(run.seeds)}: run_dir={folder} holds the learners "
-            f"of seed {listed}"
-        )
+    if "agent" not in config:
+        flaw = f'holds the run of a configuration; continue it by train(["resume={folder}"])'
+    elif run.config.total_steps < made:
+        flaw = f"has {made} steps; total_steps={run.config.total_steps} can be raised, not lowered"
+    elif saved != run.seeds:
+        flaw = f"holds the learners of seed {', '.join(map(str, saved))}; give these"
+    if flaw:
+        raise UsageError(f"run_dir={folder}: {flaw}")
     then, now = (re.sub(" at 0x[0-9a-f]+", "", each.agent) for each in (config, run.config))
     pairs = zip(then.split(", "), now.split(", "), strict=False)
     other = next((f"{a} then, {b} now" for a, b in pairs if a != b), "")

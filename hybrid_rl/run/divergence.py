@@ -10,15 +10,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from hybrid_rl.run.checkpoints.store import End
-from hybrid_rl.run.logs.rows import ACTION, of_world
-from hybrid_rl.run.shelf import Shelf
+from hybrid_rl.run.checkpoints.store import End, Shelf
+from hybrid_rl.run.logs.rows import of_world
 from hybrid_rl.training.loop import Loop
-
-BLAMED = {  # a quantity that is not finite, where all that was learned is -> what to look at
-    "eval/": "the world's rewards and the controller's actions",
-    ACTION: "what the controller acts by, as its policy, model, objective and target",
-}
 
 
 class Diverged:
@@ -40,48 +34,29 @@ class Diverged:
 
     @property
     def left(self) -> int:
-        """Learners that go on."""
+        """Learners that continue."""
         return len(self.loop.seeds) - len(self.ends)
 
     def add(
         self, failures: Mapping[int, tuple[int, str]], state: Any = None, now: int = 0
     ) -> dict[int, End]:
         """The new ends; failures: learner -> (step, quantity); state: [S, ...], at step `now`."""
-        new = {
-            s: {"seed": self.loop.seeds[s], "step": step, "quantity": quantity, **self._of(s)}
-            for s, (step, quantity) in sorted(failures.items())
-            if s not in self.ends
-        }
-        for s, end in new.items():
-            if of_world(end["quantity"]):
-                end["world"] = self._decision(s, end, state, now)
-            elif blame := self._blame(s, end["quantity"], state, now):
-                end["world"] = blame
+        new, axis, seeds = {}, self.loop.axis, self.loop.seeds
+        for s, (step, quantity) in sorted(failures.items()):
+            if s in self.ends:
+                continue
+            new[s] = {"seed": seeds[s], "step": step, "quantity": quantity}
+            if numbers := axis.names[s * axis.count // len(seeds)]:  # where there are others
+                new[s]["of"] = numbers
+            if of_world(quantity):
+                new[s]["world"] = self._decision(s, step, state, now)
         self.ends |= new
         return new
 
-    def _blame(self, s: int, quantity: str, state: Any, now: int) -> str:
-        """What else than a learning rate may have failed; "" if it may have been that."""
-        learners = self.loop.agent.learners.values()
-        blame = next((BLAMED[kind] for kind in BLAMED if quantity.startswith(kind)), "")
-        if not learners:
-            return f"nothing is learned here: see {blame or BLAMED[ACTION]}"
-        if blame and s not in unsound(state.learners, now):
-            return f"all that was learned is finite: see {blame}"
-        if any("learning_rate" in name for each in learners for name in dir(each)):
-            return ""
-        return "no learner has a learning rate: see the data and the features that they fit"
-
-    def _of(self, s: int) -> dict[str, str]:
-        """The name of the numbers of learner s, if there are others."""
-        axis = self.loop.axis
-        name = axis.names[s * axis.count // len(self.loop.seeds)]
-        return {"of": name} if name else {}
-
-    def _decision(self, s: int, end: End, state: Any, now: int) -> str:
-        """What the world of learner s returned at `end`, if the memory still holds it."""
+    def _decision(self, s: int, step: int, state: Any, now: int) -> str:
+        """The decision of learner s at `step`, if the memory still holds it, and whose fault."""
         agent, memory = self.loop.agent, jax.tree.map(lambda leaf: leaf[s], state.memory)
-        made = agent.replay.recent(memory, agent.spec, (now - end["step"]) // agent.num_envs)
+        made = agent.replay.recent(memory, agent.spec, (now - step) // agent.num_envs)
         if made is None:
             return f"a fault of the world {_class_of(agent.episode.env)}"
         sound = np.isfinite(made.reward) & np.isfinite(made.next_obs).all(-1)
@@ -122,28 +97,28 @@ def unsound(learners: Any, step: int) -> dict[int, tuple[int, str]]:
 
 def note(end: End, left: int) -> str:
     """A line for a learner that ended while `left` others continue."""
-    others = "the other learner continues" if left == 1 else f"the other {left} learners continue"
-    return f"{_words(end)}; it ends here, {others}"
+    return f"{_words(end)}; it ends here, {_others(left)} continue{'s' if left == 1 else ''}"
 
 
 def line(ends: Sequence[End], left: int, checkpoint: int | None) -> str:
     """The failure and what can be done, in one line.
 
-    left: learners that went on; checkpoint: the step of the newest one.
+    left: learners that reached the end; checkpoint: the step of the newest one.
     """
-    each = "; ".join(_words(end) for end in ends)
+    words = "; ".join(map(_words, ends))
     if left:
-        others = "the other learner" if left == 1 else f"the other {left} learners"
-        return f"{each}; {others} went on to the end"
-    of_learning = not any("world" in end for end in ends)
-    advice = "begin again with a lower learning rate"
+        return f"{words}; {_others(left)} went on to the end"
     if checkpoint is None:
-        return f"{each}; there is no checkpoint" + (f": {advice}" if of_learning else "")
-    mend = f"evaluate or resume it, or {advice}" if of_learning else "mend that and resume it"
-    return f"{each}; checkpoint {checkpoint} is whole: {mend}"
+        return f"{words}; there is no checkpoint"
+    mend = "fix what fails and resume it, or begin again with a lower learning rate"
+    return f"{words}; checkpoint {checkpoint} is intact: {mend}"
+
+
+def _others(count: int) -> str:
+    return "the other learner" if count == 1 else f"the other {count} learners"
 
 
 def _words(end: End) -> str:
     who = f"seed {end['seed']}" + (f" of {end['of']}" if "of" in end else "")
-    line = f"{who}, step {end['step']}: {end['quantity']} is not finite"
-    return f"{line}, {end['world']}" if "world" in end else line
+    words = f"{who}, step {end['step']}: {end['quantity']} is not finite"
+    return f"{words}, {end['world']}" if "world" in end else words

@@ -31,13 +31,15 @@ class Evaluations:
         self, loop: Loop, controllers: Mapping[str, Controller], episodes: int, params: Params
     ) -> None:
         """Compile all of them; params: [S, ...]."""
-        self.keys = jnp.stack([evaluation_keys(seed, episodes) for seed in loop.seeds])
-        self._evaluators = {
-            mode: _on_host(loop, controller, params, self.keys, mode)
-            if isinstance(loop, HostLoop)
-            else Evaluator(loop, controller, params, self.keys, mode)
-            for mode, controller in controllers.items()
-        }
+        keys = self.keys = jnp.stack([evaluation_keys(seed, episodes) for seed in loop.seeds])
+        self._evaluators: dict[str, Evaluator | HostEvaluator] = {}
+        for mode, controller in controllers.items():
+            if isinstance(loop, HostLoop):
+                of = partial(loop.axis.put, controller, f"controllers.{mode}")
+                given = loop.agent.episode, controller, params, keys, loop.numbers, of
+                self._evaluators[mode] = HostEvaluator(*given)
+            else:
+                self._evaluators[mode] = Evaluator(loop, controller, params, keys, mode)
 
     def __call__(self, params: Params, cut: Callable[[], bool]) -> list[dict[str, float]] | None:
         """For each learner the mean of every outcome; None once `cut` is true."""
@@ -61,7 +63,13 @@ class Evaluator:
         self, loop: Loop, controller: Controller, params: Params, keys: Array, mode: str = "full"
     ) -> None:
         self.steps, self.numbers = loop.agent.episode.steps, loop.numbers
-        first, more = (partial(_one, f, loop, controller, mode) for f in (begin, advance))
+
+        def one(f: Callable[..., Any], numbers: Any, *given: Any) -> Any:
+            """`begin` or `advance` of one learner with numbers [] of the loop's axis."""
+            acting = loop.axis.put(controller, f"controllers.{mode}", numbers)
+            return f(loop.agent.episode, acting, *given)
+
+        first, more = partial(one, begin), partial(one, advance)
         program = loop.shard(jax.vmap(first), SEEDS, SEEDS)
         self._begin = compile_lowered(program.lower(self.numbers, keys))
         takes, carry = (SEEDS, SEEDS, SEEDS, REPLICATED), self._begin(self.numbers, keys)
@@ -75,14 +83,6 @@ class Evaluator:
         """The `scores` [S, N]; None once `cut` is true."""
         begun, more = self._begin(self.numbers, keys), partial(self._advance, self.numbers, params)
         return finish_episodes(begun, more, self.steps, lambda made: cut())
-
-
-def _on_host(
-    loop: Loop, controller: Controller, params: Params, keys: Array, mode: str
-) -> HostEvaluator:
-    """The evaluator of a loop whose environments are on the host; arguments as of `Evaluator`."""
-    of = partial(loop.axis.put, controller, f"controllers.{mode}")
-    return HostEvaluator(loop.agent.episode, controller, params, keys, loop.numbers, of)
 
 
 def finish_episodes(
@@ -105,10 +105,3 @@ def finish_episodes(
         pace.took(rounds, perf_counter() - began)
         made += rounds
     return {name: np.asarray(value) for name, value in scores(carry[0]).items()}
-
-
-def _one(
-    f: Callable[..., Any], loop: Loop, controller: Controller, mode: str, numbers: Any, *given: Any
-) -> Any:
-    """`begin` or `advance` of one learner with numbers [] of the loop's axis."""
-    return f(loop.agent.episode, loop.axis.put(controller, f"controllers.{mode}", numbers), *given)

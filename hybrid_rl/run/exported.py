@@ -1,8 +1,6 @@
 """Policies and planners as programs of JAX and as plain layers, which hybrid_rl.export writes."""
 
-import sys
 from collections.abc import Callable, Sequence
-from keyword import iskeyword
 from pathlib import Path
 from typing import Any
 
@@ -88,23 +86,21 @@ def _tree(words: Array, like: Any) -> Any:
 
 def layers(spec: Spec, controller: Controller, params: Params) -> Perceptron:
     """The policy that acts as plain arrays."""
-    other = "; choose out=FILE.stablehlo"
-    if not isinstance(controller, PolicyController):
-        raise UsageError(f"mode: the file holds a policy, {type(controller).__name__} plans{other}")
-    policy: Any = controller.policy
-    if not hasattr(policy, "perceptron"):
-        name = type(policy).__name__
-        raise UsageError(f"out: the file holds a multilayer perceptron, this is {name}{other}")
-    if not is_identity(controller.model, params.model, spec.obs):
-        raise UsageError(f"out: the file holds a policy of observations, not of features{other}")
-    return policy.perceptron(params.policy, spec)
+    name, made = type(controller).__name__, None
+    if isinstance(controller, PolicyController):
+        policy: Any = controller.policy
+        name, made = type(policy).__name__, getattr(policy, "perceptron", None)
+        if not is_identity(controller.model, params.model, spec.obs):
+            name, made = "a policy of features", None
+    if made is None:
+        line = f"the file holds a multilayer perceptron of observations, this is {name}"
+        raise UsageError(f"out: {line}; choose out=FILE.stablehlo")
+    return made(params.policy, spec)
 
 
 def check_script(out: Path) -> None:
-    """Raise UsageError if OUT.py is a file of the user's, or would hide a module of Python."""
+    """Raise UsageError if OUT.py is a file of the user's."""
     script = out.with_suffix(".py")
-    if out.stem in {*sys.stdlib_module_names, "numpy"}:
-        raise UsageError(f"out={out}: {script} would hide Python's {out.stem}; choose another name")
     if script.exists() and not script.read_text(encoding="utf-8").startswith(SCRIPT[:16]):
         raise UsageError(f"out={out}: {script} would be replaced; choose another name")
 
@@ -115,10 +111,7 @@ def saved(out: Path, task: str, spec: Spec, net: Perceptron) -> str:
         return f'{out}: #include "{out.name}"; {save_c(out, task, spec, net)}(obs, action)'
     if out.suffix == ".npz":
         script = save_numpy(out, task, spec, net)
-        name = script.stem
-        act = f"from {name} import act" if name.isidentifier() and not iskeyword(name) else ""
-        act = act or f'act = importlib.import_module("{name}").act'
-        return f"{out} and {script}: {act}; action = act(obs)"
+        return f"{out} and {script}: from {script.stem} import act; action = act(obs)"
     try:
         save_onnx(out, task, spec, net)
     except ImportError as error:

@@ -7,7 +7,6 @@ have, is written once and referenced by a YAML anchor.
 """
 
 import io
-import os
 import shlex
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -34,7 +33,7 @@ from hybrid_rl.settings.words import quoted
 from hybrid_rl.version import __version__
 
 FIRST = "0.2"  # version that writes its number to config.yaml
-SWEEP = "sweep.json"  # in the folder of runs that one program trains (hybrid_rl.run.together)
+SWEEP = "sweep.json"  # in the folder of runs that one program trains (hybrid_rl.run.members)
 NO_CHECKPOINT = "holds a run without a checkpoint; delete it, or choose another"
 
 
@@ -48,12 +47,18 @@ def claim_folder(config: DictConfig) -> Iterator[Path]:
     folder = new_folder(config) if config.run_dir is None else Path(str(config.run_dir))
     new = config.run_dir is None or not folder.exists()
     try:
-        with lock(folder, "run_dir"), _cleared(folder):
+        with lock(folder, "run_dir"):
             saved = checkpoint.steps(folder / "checkpoints")
             if saved or ((folder / "config.yaml").exists() and not rowless(folder)):
                 line = f"holds a run already; choose another, or resume={folder}"
                 raise UsageError(f"run_dir={folder}: {line if saved else NO_CHECKPOINT}")
-            yield folder
+            before = {path.name for path in folder.iterdir()}
+            try:
+                yield folder
+            finally:
+                if not _trained(folder):
+                    for name in {"config.yaml", "metrics.jsonl", "metrics.csv"} - before:
+                        (folder / name).unlink(missing_ok=True)
     except BaseException:
         with suppress(OSError):  # it holds something
             if new:
@@ -61,44 +66,30 @@ def claim_folder(config: DictConfig) -> Iterator[Path]:
         raise
 
 
-@contextmanager
-def _cleared(folder: Path) -> Iterator[None]:
-    """If the block raises before it has written a row or a checkpoint, delete what it wrote."""
-    before, then = {path.name for path in folder.iterdir()}, folder.stat()
-    try:
-        yield
-    except BaseException:
-        rows = folder / "metrics.jsonl"
-        trained = rows.exists() and rows.stat().st_size > 0
-        trained = trained or bool(checkpoint.steps(folder / "checkpoints"))
-        if not trained and folder.exists() and os.path.samestat(folder.stat(), then):
-            for name in {"config.yaml", "metrics.jsonl", "metrics.csv"} - before:
-                (folder / name).unlink(missing_ok=True)
-        raise
+def _trained(folder: Path) -> bool:
+    """True if a run has written a row or a checkpoint there."""
+    rows = folder / "metrics.jsonl"
+    written = rows.exists() and rows.stat().st_size > 0
+    return written or bool(checkpoint.steps(folder / "checkpoints"))
 
 
 def rowless(folder: Path) -> bool:
-    """Whether a run began there and wrote nothing, as when it was stopped while it compiled."""
-    rows = folder / "metrics.jsonl"
-    empty = rows.exists() and rows.stat().st_size == 0
-    return empty and not checkpoint.steps(folder / "checkpoints")
+    """True if a run began there and wrote nothing, as when it was stopped while it compiled."""
+    return (folder / "metrics.jsonl").exists() and not _trained(folder)
 
 
 def new_folder(config: DictConfig, suffix: str = "") -> Path:
     """A new folder runs/TASK/ALGO/TIME[suffix]."""
     parent = Path("runs") / config.task / config.algo
     stem = f"{datetime.now():%Y-%m-%d_%H-%M-%S}{suffix}"
-    for number in range(10_000):
-        folder = parent / (f"{stem}_{number}" if number else stem)
+    folder, number = parent / stem, 0
+    while True:
         try:
             folder.mkdir(parents=True)
+            return folder
         except FileExistsError:
-            continue
-        except OSError as error:
-            line = f"run_dir={parent}: cannot be written to ({error.strerror})"
-            raise UsageError(line) from error
-        return folder
-    raise UsageError(f"run_dir=null: no free name left for {parent / stem}")
+            number += 1
+            folder = parent / f"{stem}_{number}"
 
 
 def write(folder: Path, config: DictConfig) -> None:
@@ -107,7 +98,7 @@ def write(folder: Path, config: DictConfig) -> None:
 
 
 def described(config: DictConfig) -> str:
-    """What config.yaml of a run with the resolved configuration `config` holds."""
+    """The text of config.yaml of a run with the resolved configuration `config`."""
     single = [k for k, value in config.items() if not isinstance(value, DictConfig)]
     order = dict.fromkeys(["task", "algo", *single, *SECTIONS, *config])
     values: Any = {key: config[key] for key in order if key not in ("expert", "version")}
@@ -117,7 +108,6 @@ def described(config: DictConfig) -> str:
 
 def read(folder: Path, key: str) -> DictConfig:
     """The configuration of the run in `folder`, which the argument `key` named."""
-    path = folder / "config.yaml"
     config: Any = parse_config(folder, key)
     _check_version(folder, key, config)
     if "agent" in config:
@@ -126,11 +116,10 @@ def read(folder: Path, key: str) -> DictConfig:
             "hybrid_rl.train(agent, run_dir=DIR, total_steps=N) reads it back and continues it"
         )
     missing = [name for name in ("task", "algo", "seed", *SECTIONS, *COUNTS) if name not in config]
-    if missing:
-        raise UsageError(f"{path}: lacks {', '.join(missing)}{of_another_commit(folder)}")
     with blame_config(folder):
+        if missing:
+            raise UsageError(f"lacks {', '.join(missing)}")
         check_words(config)
-    _check_seeds(folder, config)
     return config
 
 
@@ -138,25 +127,20 @@ def read_trained(folder: Path, key: str) -> DictConfig:
     """As `read`; UsageError also of a run without a checkpoint."""
     config = read(folder, key)
     if not checkpoint.steps(folder / "checkpoints"):
-        raise UsageError(f"{key}={folder}: holds no checkpoint yet; train it further first")
+        raise UsageError(f"{key}={folder}: holds no checkpoint yet")
     return config
 
 
 def _check_version(folder: Path, key: str, config: DictConfig) -> None:
     """Raise UsageError if another minor version made the run."""
-    version = config.get("version")
-    if _minor(version) == _minor(__version__):
-        return
-    if version is None:
-        version = _of_summary(folder, "versions", "hybrid_rl")
-        if _minor(version) == _minor(__version__):
-            raise UsageError(f"{folder / 'config.yaml'}: lacks version")
-    commit = _of_summary(folder, "git_commit")
-    todo = f"check out its commit, {commit}, or train again" if commit else "train again"
-    raise UsageError(
-        f"{key}={folder}: made by hybrid_rl {version or f'older than {FIRST}'}, and this is "
-        f"{__version__}; {todo}"
-    )
+    version = config.get("version") or _of_summary(folder, "versions", "hybrid_rl")
+    if _minor(version) != _minor(__version__):
+        commit = _of_summary(folder, "git_commit")
+        todo = f"check out its commit, {commit}, or train again" if commit else "train again"
+        raise UsageError(
+            f"{key}={folder}: made by hybrid_rl {version or f'older than {FIRST}'}, and this is "
+            f"{__version__}; {todo}"
+        )
 
 
 def _minor(version: Any) -> list[str]:
@@ -165,7 +149,7 @@ def _minor(version: Any) -> list[str]:
 
 
 def _of_summary(folder: Path, *keys: str) -> str | None:
-    """What summary.json holds at `keys`, one below the other; None if it has no such thing."""
+    """The value of summary.json at `keys`, one below the other; None if there is none."""
     try:
         value: Any = json_file(folder / "summary.json")
         for key in keys:
@@ -175,35 +159,17 @@ def _of_summary(folder: Path, *keys: str) -> str | None:
     return None if value is None else str(value)
 
 
-def _check_seeds(folder: Path, config: DictConfig) -> None:
-    """Raise UsageError if the newest checkpoint holds learners of other seeds."""
-    saved = checkpoint.meta(folder / "checkpoints").get("seeds")
-    first, number = config.seed, config.num_seeds
-    if saved is None or not (isinstance(first, int) and isinstance(number, int)):
-        return
-    if len(saved) != number or saved != list(range(first, first + number)):
-        listed = ", ".join(map(str, saved))
-        raise UsageError(
-            f"{folder / 'config.yaml'}: seed={first} num_seeds={number}: its checkpoint holds the "
-            f"learners of seed {listed}; put back seed={saved[0]} num_seeds={len(saved)}"
-        )
-
-
 @contextmanager
 def blame_config(folder: Path, lacking: bool = False) -> Iterator[None]:
     """Errors about the configuration of a run, or just `lacking` keys, name its config.yaml."""
     path = folder / "config.yaml"
     try:
         yield
-    except PartError:  # a file of the user's own
-        raise
-    except (ConfigKeyError, ConfigAttributeError) as error:
-        line = f"{path}: lacks {error.full_key or error.key}{of_another_commit(folder)}"
-        raise UsageError(line) from error
     except (UsageError, MisfitError, OmegaConfBaseException) as error:
-        if lacking:  # the others are of another configuration
+        absent = isinstance(error, ConfigKeyError | ConfigAttributeError)
+        if isinstance(error, PartError) or (lacking and not absent):  # of a file of the user's own
             raise
-        line = str(error).partition("\n")[0]
+        line = f"lacks {error.full_key or error.key}" if absent else str(error).partition("\n")[0]
         line = f"{path}: {line.removeprefix(f'{path}: ')}{of_another_commit(folder)}"
         raise UsageError(line) from error
 
@@ -239,32 +205,22 @@ def going_on(folder: str | Path) -> str:
 
 
 def words(values: Mapping[str, float]) -> str:
-    """What sets a run of a sweep apart, as typed; empty if nothing does."""
+    """The values that set a run of a sweep apart, as typed; empty if it has none."""
     return printable(" ".join(f"{key}={value}" for key, value in values.items()))
 
 
 def parse_config(folder: Path, key: str = "runs") -> DictConfig:
-    """What config.yaml of the run in `folder` holds, which the argument `key` named.
+    """The content of config.yaml of the run in `folder`, which the argument `key` named.
 
     It may come from anybody: it has plain values only, names parts only (files.targets), and
     compiled programs are kept where this machine keeps them.
     """
     path = folder / "config.yaml"
     if not path.exists():
-        if runs := members(folder):
-            each = ", ".join(f"{run} ({words(values)})" for run, values in runs.items())
-            raise UsageError(f"{key}={folder}: holds a sweep; give one of its runs: {each}")
-        named = "" if folder == Path() else folder  # of an empty variable, too
-        line = f"{key}={named}: no run folder there (no config.yaml in it)"
-        below = ("", "/*", "/*/*") if named else ()  # also of a pattern
-        found = [file for tail in below for file in glob(f"{folder}{tail}/config.yaml")]
-        newest = max(found, key=lambda file: Path(file).stat().st_mtime, default="")
-        raise UsageError(f"{line}; the newest is {key}={Path(newest).parent}" if newest else line)
+        raise UsageError(f"{key}={'' if folder == Path() else folder}: {_instead(folder, key)}")
     config = yaml_file(path, lambda text: OmegaConf.load(io.StringIO(text)))
-    if not isinstance(config, DictConfig):
-        raise UsageError(f"{path}: holds no keys")
-    if not config:
-        raise UsageError(f"{path}: is empty")
+    if not isinstance(config, DictConfig) or not config:
+        raise UsageError(f"{path}: is empty, or no group of keys")
     try:
         values: Any = OmegaConf.to_container(config)
         parts.check({**values, "recipe": str(values.get("recipe"))}, folder)
@@ -274,3 +230,15 @@ def parse_config(folder: Path, key: str = "runs") -> DictConfig:
     defaults: Any = OmegaConf.load(CONF / "train.yaml")
     config.compile_cache = defaults.compile_cache
     return config
+
+
+def _instead(folder: Path, key: str) -> str:
+    """The line about a folder without config.yaml, which may hold other folders of runs."""
+    if runs := members(folder):
+        listed = ", ".join(f"{run} ({words(values)})" for run, values in runs.items())
+        return f"holds a sweep; give one of its runs: {listed}"
+    below = ("", "/*", "/*/*") if folder != Path() else ()  # "": of an empty variable
+    found = [file for tail in below for file in glob(f"{folder}{tail}/config.yaml")]  # a pattern
+    newest = max(found, key=lambda file: Path(file).stat().st_mtime, default="")
+    hint = f"; the newest is {key}={Path(newest).parent}" if newest else ""
+    return f"no run folder there (no config.yaml in it){hint}"

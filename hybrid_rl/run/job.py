@@ -1,45 +1,92 @@
-"""What a program trains, and where: a run in its folder, or those of a sweep in theirs."""
+"""A program's runs in their folders: locked, with records and checkpoints, up to summary.json."""
 
-from collections.abc import Callable, Sequence
-from contextlib import ExitStack
+import json
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Self
+from typing import Any
 
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig, OmegaConf, open_dict
 
+from hybrid_rl.errors import FAULTS, UsageError
 from hybrid_rl.files.atomic import naming, refuse_link
 from hybrid_rl.networks import precision
 from hybrid_rl.outside.loops import loop_of
-from hybrid_rl.run.checkpoints.store import Store
+from hybrid_rl.run import folder
+from hybrid_rl.run.checkpoints.store import Shelf, Store
+from hybrid_rl.run.files.integrity import write_text
+from hybrid_rl.run.folder import SWEEP
 from hybrid_rl.run.logs import loggers
 from hybrid_rl.run.logs.log import RunLog
 from hybrid_rl.run.logs.records import Row, flatten_keys
 from hybrid_rl.run.machine import provenance
+from hybrid_rl.run.members import Member
 from hybrid_rl.run.session import Session
-from hybrid_rl.run.shelf import Shelf
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings.build import Run
 from hybrid_rl.training.axis import Axis
 from hybrid_rl.training.loop import Loop
 
 
-@dataclass(frozen=True)
 class Output:
-    """Where a run reports, besides its folder."""
+    """Where a run reports, besides its folder: the console, and a function of the user's.
 
-    on_row: loggers.Callback | None = None  # gets every row
-    progress: bool = True  # on the console
+    The function is called with every new row, a dictionary. Where it returns False, `ask` is called
+    with 0, and it gets the rows up to the end. Where it raises, also; `problem` is what it raised,
+    and it is not called again.
+    """
 
-    @classmethod
-    def of(cls, function: Callable[[Row], Any] | None, progress: bool = True) -> Self:
-        """With a function of the user's that gets every row; None: none."""
-        return cls(None if function is None else loggers.Callback(function), progress)
+    def __init__(self, function: Callable[[Row], Any] | None = None, progress: bool = True) -> None:
+        self._function, self._asked, self.progress = function, False, progress
+        self.ask: Callable[[int], None] = lambda number: None
+        self.problem: BaseException | None = None
+
+    def __call__(self, row: Row) -> None:
+        """Call the function."""
+        if self._function is None or self.problem is not None:
+            return
+        try:
+            ends = self._function(dict(row)) is False
+        except FAULTS as problem:
+            self.problem, ends = problem, True
+        if ends and not self._asked:
+            self._asked = True
+            self.ask(0)
 
     def raise_problem(self) -> None:
         """Raise what the function raised, if it did; the run has ended with a checkpoint."""
-        if self.on_row is not None and self.on_row.problem is not None:
-            raise self.on_row.problem
+        if self.problem is not None:
+            raise self.problem
+
+
+@contextmanager
+def claim_folders(members: Sequence[Member]) -> Iterator[list[Path]]:
+    """New folders, as of `folder.claim_folder`; with several runs numbers, beside sweep.json."""
+    config, several = members[0].config, len(members) > 1
+    made = config.run_dir is None or not Path(str(config.run_dir)).exists()
+    parent = Path(str(config.run_dir or folder.new_folder(config))) if several else Path()
+    if several and ((parent / SWEEP).exists() or (parent / "config.yaml").exists()):
+        line = f"holds a run already; choose another, or resume={parent}"
+        raise UsageError(f"run_dir={parent}: {line}")
+    try:
+        with ExitStack() as stack:
+            folders = []
+            for number, member in enumerate(members):
+                if several:
+                    with open_dict(member.config):
+                        member.config.run_dir = str(parent / str(number))
+                folders.append(stack.enter_context(folder.claim_folder(member.config)))
+            if several:
+                columns = {key: [own.values[key] for own in members] for key in members[0].values}
+                write_text(parent / SWEEP, json.dumps(columns, indent=1) + "\n")
+            yield folders
+    except BaseException:
+        if several and not any((parent / str(number)).exists() for number in range(len(members))):
+            (parent / SWEEP).unlink(missing_ok=True)
+            if made and parent.exists() and not any(parent.iterdir()):
+                parent.rmdir()
+        raise
 
 
 @dataclass(frozen=True)
@@ -63,40 +110,34 @@ class Job:
         """The folder that `resume` continues."""
         return self.folders[0] if len(self.folders) == 1 else self.folders[0].parent
 
-    def logs(self, output: Output, stack: ExitStack) -> list[RunLog]:
-        """The records of the runs, open until the end of `stack`."""
-        logs = []
+    def shelf(self, loop: Loop, output: Output, stack: ExitStack) -> Shelf:
+        """The records, open until the end of `stack`, and the checkpoints."""
+        logs, stores, several = [], [], len(self.runs) > 1
         for run, run_dir in zip(self.runs, self.folders, strict=True):
-            settings: Any = OmegaConf.to_container(run.config)
-            names = loggers.check(run.config.get("logger"))
-            copies = [loggers.KINDS[name](run_dir, run.seeds, settings) for name in names]
-            if output.on_row is not None:
-                more = {"run_dir": str(run_dir)} if len(self.runs) > 1 else {}
-                copies.append(loggers.Named(output.on_row, more))
+            config, more = run.config, {"run_dir": str(run_dir)} if several else {}
+            names = loggers.check(config.get("logger"))
+            settings: Any = OmegaConf.to_container(config)
             stack.enter_context(naming(run_dir))
-            logs.append(stack.enter_context(RunLog(run_dir, run.seeds, copies)))
-        return logs
-
-    def shelf(self, loop: Loop, logs: Sequence[RunLog]) -> Shelf:
-        """The records and the checkpoints."""
-        stores = []
-        for run, run_dir in zip(self.runs, self.folders, strict=True):
-            own = loop if len(self.runs) == 1 else Loop(run.agent, run.seeds, loop.stride)
-            replay, path = run.config.checkpoint_replay, refuse_link(run_dir / "checkpoints")
-            stores.append(Store(path, own, replay, written(run.config)))
+            log = RunLog(
+                run_dir, run.seeds, settings, names, lambda row, more=more: output(row | more)
+            )
+            logs.append(stack.enter_context(log))
+            own = Loop(run.agent, run.seeds, loop.stride) if several else loop
+            path = refuse_link(run_dir / "checkpoints")
+            stores.append(Store(path, own, config.checkpoint_replay, written(config)))
         return Shelf(loop, logs, stores)
 
     def summaries(self, session: Session) -> list[dict[str, Any]]:
-        """What summary.json of each run holds; it is written."""
-        shelf, each = session.shelf, []
+        """The contents of summary.json of each run, which are written."""
+        shelf, summaries = session.shelf, []
         for run, log, share in zip(self.runs, shelf.logs, shelf.shares(), strict=True):
-            each.append(_summary(run.config, session, log.run_dir, share))
-            log.summary(each[-1])
-        return each
+            summaries.append(_summary(run.config, session, log.run_dir, share))
+            log.summary(summaries[-1])
+        return summaries
 
 
 def _summary(config: DictConfig, session: Session, run_dir: Path, share: slice) -> dict[str, Any]:
-    """What summary.json of the learners in `share` holds."""
+    """The contents of summary.json of the learners in `share`."""
     values: Any = OmegaConf.to_container(config)
     ends, rate = session.diverged.ends, session.record.learning.rate
     return {
@@ -123,7 +164,7 @@ def _summary(config: DictConfig, session: Session, run_dir: Path, share: slice) 
 
 
 def written(config: DictConfig) -> dict[str, Any]:
-    """What config.yaml holds, by full keys."""
+    """The values of config.yaml, by full keys."""
     values: Any = OmegaConf.to_container(config)
     others = ("expert", "version", "recipe", "config_dir")
     return flatten_keys({key: value for key, value in values.items() if key not in others})

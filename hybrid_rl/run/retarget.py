@@ -21,14 +21,13 @@ anything acts (training.imagined).
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import jax
 import jax.numpy as jnp
-import yaml
 from hydra import compose, initialize_config_dir
 from hydra.errors import HydraException
 from jax import Array
@@ -79,10 +78,9 @@ def load_changed(
 def apply_changes(
     trained: Trained, given: Mapping[str, Any], changes: Mapping[str, str]
 ) -> tuple[Trained, dict[str, str]]:
-    """What `load_changed` returns, of a run or policy that is read already."""
-    ours = GOALS
-    goal = {key: given[key] for key in ours if given[key]}
-    goal |= {key: value for key, value in changes.items() if key.split(".")[0] in ours}
+    """The result of `load_changed`, of a run or policy that is read already."""
+    goal = {key: given[key] for key in GOALS if given[key]}
+    goal |= {key: value for key, value in changes.items() if key.split(".")[0] in GOALS}
     words = [f"{key}={value}" for key, value in goal.items()]
     trained = retargeted(trained, words, given["config_dir"])
     rest = {key: value for key, value in changes.items() if key not in goal}
@@ -111,52 +109,43 @@ def retargeted(
 def aimed(
     trained: Trained, overrides: Sequence[str], config_dir: str | Path | None = None
 ) -> tuple[Trained, Imagination | None]:
-    """What `retargeted` gives, with its errors, before a policy learns, and how it will learn."""
+    """The result of `retargeted` before a policy learns, and how it will learn."""
     if not overrides:
         return trained, None
-    named = {text.partition("=")[0] for text in overrides}
-    if "controllers" in (trained.config or ()) and all(key.startswith("planner.") for key in named):
-        return _adjusted(trained, overrides), None
-    for text in overrides:
-        group, dot, _ = text.partition("=")[0].partition(".")
-        goal = (*configuration.PAID, "imagine") if group == "planner" else ()  # they bring one
-        if dot and not named & {group, *goal}:
-            raise UsageError(f"{text}: is a key of {group}=NAME; give that with it")
     config: Any = OmegaConf.to_container(trained.config, resolve=True)
+    named = {text.partition("=")[0]: text for text in overrides}
+    if "controllers" in config and all(key.startswith("planner.") for key in named):
+        return _adjusted(trained, OmegaConf.create(config), overrides), None
     composed = raw_values(_composed(overrides, config_dir))
-    typed = [text.partition("=")[0] for text in overrides if "." in text.partition("=")[0]]
+    typed = [key for key in named if "." in key]
     raw = complete({**UNLEARNED, **config, **composed}, [*composed], typed)
     for key in typed:
+        group = key.partition(".")[0]
+        goal = (*configuration.PAID, "imagine") if group == "planner" else ()  # they bring one
+        if not {group, *goal} & {*named}:
+            raise UsageError(f"{named[key]}: is a key of {group}=NAME; give that with it")
         if select(raw, key) is LACKING:
             raise UsageError(refusal(key, [{**raw, "algo": config.get("algo")}]))
     goal = _fitting(config, OmegaConf.create({key: raw[key] for key in composed}))
-    for lost in overrides:
-        key = lost.split("=")[0].split(".")[0]
-        if key in (*PLANNERS, "imagine") and key not in goal:
-            does = "imagine with" if key == "imagine" else "plan with"
-            raise UsageError(f"{lost}: there is no learned model to {does}")
+    for text in overrides:
+        if (key := re.split("[.=]", text)[0]) in (*PLANNERS, "imagine") and key not in goal:
+            lacks = "policy and model to imagine" if key == "imagine" else "model to plan"
+            raise UsageError(f"{text}: there is no learned {lacks} with")
     kept = {key: value for key, value in config.items() if key not in {*KEYS, *goal}}
-    kept["controllers"] = config.get("controllers", {})
-    changed: Any = OmegaConf.merge(kept, goal)
+    changed: Any = OmegaConf.merge({"controllers": {}}, kept, goal)
     OmegaConf.resolve(changed)
     episode, controllers, before = configuration.acting(changed)
     notes = trained.notes
     if "planner" not in goal:
         unaware = f"what acts knows nothing of {' '.join(overrides)}"
         notes = (*notes, f"{trained.task}: there is no learned model to plan with; {unaware}")
-    now = replace(
-        trained,
-        episode=episode,
-        controllers={**trained.controllers, **_greedy(trained, episode, controllers)},
-        notes=notes,
-        config=changed,
-    )
+    acting = {**trained.controllers, **_greedy(trained, episode, controllers)}
+    now = replace(trained, episode=episode, controllers=acting, notes=notes, config=changed)
     return now, before
 
 
-def _adjusted(trained: Trained, overrides: Sequence[str]) -> Trained:
+def _adjusted(trained: Trained, config: Any, overrides: Sequence[str]) -> Trained:
     """`trained` with other values of keys of the planner that acts in it, planner.KEY=VALUE."""
-    config: Any = OmegaConf.create(OmegaConf.to_container(trained.config, resolve=True))
     for text in overrides:
         key, _, value = text.partition("=")
         OmegaConf.update(config, key.replace("planner", "controllers.full", 1), value_of(value))
@@ -175,11 +164,11 @@ def _greedy(
         agent = Agent(episode, next(iter(controllers.values())), {}, Replay())
         one: Any = jax.tree.map(lambda leaf: leaf[0], trained.params)
         check_acting(agent, controllers.values(), one)
-    return {mode: each.greedy() for mode, each in controllers.items()}
+    return {mode: controller.greedy() for mode, controller in controllers.items()}
 
 
 def by_learner(trained: Trained, one: Callable[[Params, Array], Any]) -> Any:
-    """What `one` gives for the parameters and the key of each learner: [S, ...]."""
+    """The results [S, ...] of `one` for the parameters and the key of each learner."""
     keys = jnp.stack([jax.random.fold_in(jax.random.key(seed), 0x1DEA) for seed in trained.seeds])
     return compile_lowered(jax.jit(jax.vmap(one)).lower(trained.params, keys))(trained.params, keys)
 
@@ -195,7 +184,6 @@ def _taught(trained: Trained, before: Imagination) -> Trained:
 
 def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
     """The parts of `goal` that a run with this configuration can use."""
-    goal = goal.copy()
     own = goal.reward is None and "objective" in config
     if goal.reward is None and "reward_model" in config:  # learned in training
         goal.goal_reward = "${reward_model}"
@@ -210,18 +198,17 @@ def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
             planner.priced = True
     if "proposal" in config or "policy" not in config:
         del goal.proposal
-    if {"model", "reward_model"} - set(config):
+    if not {"model", "reward_model"} <= {*config}:
         return OmegaConf.masked_copy(goal, [*configuration.PAID])
     if "policy" not in config:
-        if goal.get("imagine") is not None:
-            raise UsageError("imagine=policy: there is no policy that could learn")
+        goal.pop("imagine", None)
         goal.planner = goal.planner_alone
         goal.controllers = dict.fromkeys(("full", "planner"), "${planner}")
     return goal
 
 
 def _priced(config: dict[Any, Any], limit: Any) -> bool:
-    """Whether the reward of a run was learned with the price of this limit.
+    """True if the reward of a run was learned with the price of this limit.
 
     That price stays, also if `constraint.price` is another one now.
     """
@@ -238,42 +225,22 @@ def _priced(config: dict[Any, Any], limit: Any) -> bool:
 def _composed(overrides: Sequence[str], config_dir: str | Path | None) -> DictConfig:
     """conf/retarget.yaml with the overrides of a command."""
     words = [f"controller@{text}" if text.split("=")[0] in PLANNERS else text for text in overrides]
-    if config_dir:
-        words.append(search_path(config_dir))
+    words += [search_path(config_dir)] if config_dir else []
     try:
         check_choices(words)
         with configuration.COMPOSING, initialize_config_dir(str(CONF), version_base="1.3"):
             found: Any = compose("retarget", forced(words, {*GROUPS, "controller"}))
-    except (HydraException, OmegaConfBaseException) as error:
-        raise UsageError(_as_given(explain(error))) from error
-    except UsageError as error:
-        raise UsageError(_as_given(str(error))) from error
+    except (HydraException, OmegaConfBaseException, UsageError) as error:
+        line = str(error) if isinstance(error, UsageError) else explain(error)
+        raise UsageError(re.sub(r"^controller(@planner)?=", "planner=", line)) from error
     return OmegaConf.create({**dict.fromkeys(configuration.PAID), **found})
-
-
-def _as_given(line: str) -> str:
-    """A message in which a planner has the name that it has in a command."""
-    return re.sub(r"^controller(?:@(\w+))?=", lambda found: f"{found[1] or 'planner'}=", line)
 
 
 def disturbed(config: DictConfig, changes: Mapping[str, str]) -> Episode:
     """The episodes of `config` with other values of env.KEY and episode.KEY."""
     changed = config.copy()
     OmegaConf.set_readonly(changed, False)
-    for key, value in changes.items():
-        section, _, name = key.partition(".")
-        part = Episode if section == "episode" else part_class(changed.env._target_)
-        hidden = ("env", *configuration.PAID) if section == "episode" else ()
-        known = [field.name for field in fields(part) if field.name not in hidden]
-        if name.partition(".")[0] not in known:
-            whose = f"the {section} of task {config.task}"
-            raise UsageError(f"{key}={value}: {whose} has {', '.join(known) or 'no keys'}")
-        try:
-            read = OmegaConf.from_dotlist([f"value={value}"]).value
-        except yaml.YAMLError as error:
-            raise UsageError(
-                f"{key}={value}: is no YAML: {getattr(error, 'problem', '')}"
-            ) from error
-        with open_dict(changed):
-            OmegaConf.update(changed, key, read)
+    with open_dict(changed):
+        for key, value in changes.items():
+            OmegaConf.update(changed, key, value_of(value))
     return configuration.episodes(changed)

@@ -11,7 +11,9 @@ the command, the seed and the evaluation.
 """
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -133,7 +135,9 @@ def of(run: Run, folder: Path) -> Trained:
     name, agent, seeds = run.config.task, run.agent, run.seeds
     step, state, notes = restore(folder, run)
     params = jax.vmap(agent.params, axis_size=len(seeds))(state)  # state may be empty
-    return Trained(name, agent.episode, run.controllers, params, seeds, step, notes, agent=agent)
+    return Trained(
+        name, agent.episode, run.controllers, params, seeds, step, (*notes,), agent=agent
+    )
 
 
 def build_run(config: DictConfig, part: str = "learners") -> Run:
@@ -149,9 +153,7 @@ def build_run(config: DictConfig, part: str = "learners") -> Run:
     return configuration.build(config)
 
 
-def restore(
-    folder: Path, run: Run, part: str = "learners"
-) -> tuple[int, AgentState, tuple[str, ...]]:
+def restore(folder: Path, run: Run, part: str = "learners") -> tuple[int, AgentState, list[str]]:
     """(step, state [S, ...], notes) of the newest sound checkpoint of `run` in `folder`.
 
     part: the field of the state that is read; the others are None.
@@ -160,8 +162,7 @@ def restore(
         CheckpointError: if none is sound.
         MisfitError: if it is of another run.
     """
-    step, state, notes = read_part(folder / "checkpoints", run.agent, run.seeds, part)
-    return step, state, tuple(notes)
+    return read_part(folder / "checkpoints", run.agent, run.seeds, part)
 
 
 def names() -> list[str]:
@@ -170,7 +171,7 @@ def names() -> list[str]:
 
 
 def load_named(given: Mapping[str, Any]) -> Trained:
-    """What the arguments run=DIR or policy=NAME name."""
+    """The run or policy that the arguments run=DIR or policy=NAME name."""
     if bool(given["run"]) == bool(given["policy"]):
         raise UsageError(
             "run, policy: give one of them; run=DIR is a folder that training wrote, "
@@ -183,21 +184,17 @@ def read(name: str) -> Trained:
     """The policy NAME of the package, or that in a file whose name ends in .npz."""
     file = Path(name) if name.endswith(".npz") else Path("policies", f"{name}.npz")
     prefix, known = f"policy={name}:", f"choose a file, or one of {', '.join(names())}"
-    if not name.endswith(".npz") and Path(name).exists():
-        raise UsageError(f"{prefix} is no .npz file; a run's folder is run={name}")
     try:
         arrays = archive.read(prefix, file, hint=known)
         if archive.ABOUT not in arrays:
-            raise UsageError(f"{prefix} has no description; write it again with `demonstrate`")
-        about = _described(prefix, str(arrays[archive.ABOUT]), archive.find(file))
+            raise ValueError("has no description; write it again with `demonstrate`")
+        about = _described(str(arrays[archive.ABOUT]), archive.find(file))
         prepare(configuration.load([]))
         return _trained(prefix, str(file), str(arrays["task"]), about)
-    except UsageError:
-        raise
-    except ValueError as error:
-        raise UsageError(str(error)) from error
-    except UNFIT as error:
-        raise UsageError(f"{prefix} its description fits no policy ({printable(error)})") from error
+    except (ValueError, *UNFIT) as error:
+        line = f"its description fits no policy ({printable(error)})"
+        line = str(error) if isinstance(error, ValueError) else line
+        raise UsageError(f"{prefix} {line.removeprefix(prefix).lstrip()}") from error
 
 
 def _trained(prefix: str, file: str, task: str, about: dict[str, Any]) -> Trained:
@@ -206,12 +203,12 @@ def _trained(prefix: str, file: str, task: str, about: dict[str, Any]) -> Traine
     if isinstance(env.get("physics"), str):
         env = env | {"physics": resolve(env["physics"], 1)}  # of this machine
     env = part(prefix, file, env)
-    world = {"task": task, "num_seeds": 1, "num_envs": 1, "env": about["env"]}
-    kept = {name: about[name] for name in (*ACTING, *configuration.PAID) if name in about}
+    paid = {name: part(prefix, file, about[name]) for name in configuration.PAID if name in about}
     trained = SavedPolicy(None, file, task, env, about["episode"])
     controller = PolicyController(trained.policy, explore=False)
-    paid = {name: part(prefix, file, about[name]) for name in configuration.PAID if name in about}
     params = Params(policy=trained.load(), **_models(prefix, file, task, env, about))
+    kept = {name: about[name] for name in (*ACTING, *configuration.PAID) if name in about}
+    kept |= {"task": task, "num_seeds": 1, "num_envs": 1, "env": about["env"]}
     return Trained(
         task,
         Episode(env, **about["episode"], **paid),
@@ -220,7 +217,7 @@ def _trained(prefix: str, file: str, task: str, about: dict[str, Any]) -> Traine
         (about["seed"],),
         about["step"],
         tuple(_origin(about)),
-        OmegaConf.create(world | kept),
+        OmegaConf.create(kept),
     )
 
 
@@ -228,42 +225,29 @@ def _models(prefix: str, file: str, task: str, env: Any, about: dict[str, Any]) 
     """Parameters of model, reward and critic in `file`, by their field of Params; {} without."""
     if not {"model", "reward_model"} <= set(about):
         return {}
-    model, reward = (part(prefix, file, about[name]) for name in ("model", "reward_model"))
-    spec, key = env.spec, jax.random.key(0)
-    lifted = lifted_spec(model, spec)
-    like = {
-        "model": jax.eval_shape(lambda: model.init(key, spec)),
-        "reward_model": jax.eval_shape(lambda: reward.init(key, lifted)),
-    }
-    more = {
-        name: part(prefix, file, about[name]) for name in (*OBJECTIVES, "critic") if name in about
-    }
-    if critic := more.get("critic"):
-        like["critic"] = jax.eval_shape(lambda: critic.init(key, lifted))
-    found = {
-        name: archive.policy(file, shapes, task, env, about["episode"], name)
-        for name, shapes in like.items()
-    }
+    named = [name for name in ("model", "reward_model", *OBJECTIVES, "critic") if name in about]
+    made = {name: part(prefix, file, about[name]) for name in named}
+    key, lifted = jax.random.key(0), lifted_spec(made["model"], env.spec)
+    found = {}
+    for name in ("model", "reward_model", "critic"):
+        if name in made:
+            spec = env.spec if name == "model" else lifted
+            shapes = jax.eval_shape(partial(made[name].init, key, spec))
+            found[name] = archive.policy(file, shapes, task, env, about["episode"], name)
     return {"reward": found.pop("reward_model"), **found}
 
 
-def _described(prefix: str, text: str, file: Path) -> dict[str, Any]:
+def _described(text: str, file: Path) -> dict[str, Any]:
     """`about` of a file, whose names are judged."""
-    try:
+    about: Any = None
+    with suppress(ValueError):
         about = from_json(text)
-    except ValueError as error:
-        raise UsageError(f"{prefix} its description is damaged") from error
+    known = about if isinstance(about, dict) else {}
     kinds = {**dict.fromkeys(PARTS, dict), **dict.fromkeys(COUNTS, int)}
-    missing = [key for key in kinds if not isinstance(about, dict) or key not in about]
-    if missing:
-        raise UsageError(f"{prefix} its description lacks {', '.join(missing)}")
-    if wrong := [key for key, kind in kinds.items() if type(about[key]) is not kind]:
-        raise UsageError(f"{prefix} {wrong[0]} of its description is of a wrong kind")
-    try:
-        parts.check({**about, "command": ""}, file)  # which is only shown
-    except UsageError as error:
-        raise UsageError(f"{prefix} {error}") from error
-    return about
+    if wrong := [key for key, kind in kinds.items() if type(known.get(key)) is not kind]:
+        raise ValueError(f"its description lacks {', '.join(wrong)}, or is damaged there")
+    parts.check({**known, "command": ""}, file)  # which is only shown
+    return known
 
 
 def _origin(about: Mapping[str, Any]) -> list[str]:

@@ -32,11 +32,11 @@ class Schedule:
         return min(self.total_steps, *marks, *(change for change in changes if change > step))
 
     def due(self, every: int, step: int, worlds: int) -> bool:
-        """Whether a multiple of `every`, or the end, lies in the round that ended at `step`."""
+        """True if a multiple of `every`, or the end, lies in the round that ended at `step`."""
         return step // every > (step - worlds) // every or step >= self.total_steps
 
     def row_due(self, step: int, worlds: int) -> bool:
-        """Whether a row of means ends at `step`."""
+        """True if a row of means ends at `step`."""
         return any(self.due(every, step, worlds) for every in self._marks)
 
 

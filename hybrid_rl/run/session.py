@@ -19,7 +19,7 @@ import numpy as np
 from hybrid_rl.errors import DivergenceError
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run import divergence
-from hybrid_rl.run.checkpoints.store import Record
+from hybrid_rl.run.checkpoints.store import Record, Shelf
 from hybrid_rl.run.divergence import Diverged
 from hybrid_rl.run.evaluations import EVALUATED, Evaluations
 from hybrid_rl.run.logs import rows
@@ -27,7 +27,6 @@ from hybrid_rl.run.logs.progress import DRAWN, Progress
 from hybrid_rl.run.logs.records import Row
 from hybrid_rl.run.machine import memory, provenance
 from hybrid_rl.run.schedule import Pace, Schedule, Speed
-from hybrid_rl.run.shelf import Shelf
 from hybrid_rl.run.start import Start
 from hybrid_rl.training.loop import Loop
 
@@ -72,7 +71,7 @@ class Session:
 
     @property
     def finished(self) -> bool:
-        """Whether all decisions are made, and evaluated."""
+        """True if all decisions are made, and evaluated."""
         return self.step >= self.schedule.total_steps and not self.record.unevaluated
 
     def begin(self, start: Start | None = None) -> None:
@@ -85,11 +84,7 @@ class Session:
             self.progress.note(start.line)
 
     def resume(self) -> None:
-        """Start from the newest sound checkpoint.
-
-        Raises:
-            CheckpointError: if there is none, or it belongs to another run.
-        """
+        """Start from the newest sound checkpoint."""
         self.state, self.gathered, self.record, ends, notes = self.shelf.restore()
         self.progress.step = self.step
         if not self.schedule.checkpoint_replay:
@@ -125,12 +120,7 @@ class Session:
         self.progress.note("stopping, with a checkpoint ...")
 
     def run(self) -> None:
-        """Advance to the end, or until `ask` was called; the last state is always saved.
-
-        Raises:
-            DivergenceError: if the last learner reached NaN or infinity.
-            CheckpointError: if a checkpoint could not be written.
-        """
+        """Advance to the end, or until `ask` was called; the last state is always saved."""
         plan, worlds = self.schedule, self.loop.agent.num_envs
         while not self.finished and self.stop is None:
             if not self.record.unevaluated:
@@ -267,8 +257,8 @@ class Session:
         means = []
         for s, pairs in enumerate(self.record.returns):
             values = [value for at, value in pairs if at > tail] or [v for _, v in pairs[-1:]]
-            sound = bool(values) and s not in self.diverged.ends
-            means.append(float(np.mean(values)) if sound else None)
+            known = values and s not in self.diverged.ends
+            means.append(float(np.mean(values)) if known else None)
         return means
 
     def final_evaluations(self) -> list[float | None]:

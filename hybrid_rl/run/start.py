@@ -1,10 +1,12 @@
-"""What a new run begins with, from the newest checkpoint of another one: run=DIR.
+"""A new run that begins with another one: its words, and what its learners know, by run=DIR.
 
-The learners begin with all that they know there: parameters, states of optimisers, statistics. The
-memory of decisions is kept only as far as it is true in the new run, and imagined decisions only
-where nothing has changed.
+config.yaml keeps the words that made a run as `recipe`. They are composed with the new ones, so
+that what refers to another key follows it. The learners begin with all that they know there:
+parameters, states of optimisers, statistics. The memory of decisions is kept only as far as it is
+true in the new run, and imagined decisions only where nothing has changed.
 """
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,24 +17,82 @@ import jax.numpy as jnp
 from omegaconf import DictConfig, OmegaConf, open_dict
 
 from hybrid_rl.errors import MisfitError, UsageError
+from hybrid_rl.files import targets as parts
 from hybrid_rl.run import folder
 from hybrid_rl.run.checkpoints import checkpoint
-from hybrid_rl.run.checkpoints.store import read_part, with_capacity
+from hybrid_rl.run.checkpoints.store import concatenated, read_part, with_capacity
 from hybrid_rl.run.logs.records import changes, flatten_keys
 from hybrid_rl.settings import build as configuration
+from hybrid_rl.settings import words as overrides
 from hybrid_rl.settings.build import Run
+from hybrid_rl.settings.groups import search_path
+from hybrid_rl.settings.words import name
 from hybrid_rl.training.agent import Agent, AgentState
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import forgotten
 
+OWN = ("random_steps", "pretrain", "run_dir", "freeze", "distributed", "resume", "run")
+FRESH = ("random_steps=0", "pretrain=0")  # the learners have begun
+FOREIGN = re.compile(r"\$\{[^}]*:|^\+*(hydra|(?!demonstrations=)[\w@]+=[^=]*\.\.)")
 WORLD = ("env", "episode", "constraint", "num_envs")  # keys on which what is remembered depends
 PASSING = ("episode.steps", "env.physics")  # but not on these
 RELABELLED = ", with the rewards that they earn now"
 
 
+def add_recipe(texts: Sequence[str], config_dir: str | Path | None = None) -> list[str]:
+    """The words of a command, with those of the run in run=DIR before them."""
+    named = [text for text in texts if text.startswith("run=") and text != "run=null"]
+    if not named:
+        return [*texts]
+    given = overrides.typed_values(texts)
+    if given.get("resume", "null") != "null":
+        raise UsageError(
+            "run, resume: give one of them; run=DIR begins a new run with what DIR has learned, "
+            "resume=DIR continues DIR itself"
+        )
+    (which,) = overrides.parse(named[-1:])
+    folders = list(which.sweep_iterator()) if which.is_sweep_override() else [which.value()]
+    first, *others = [_recipe(Path(str(path).strip("'\"")), config_dir) for path in folders]
+    if any({*words} != {*first} for words in others):
+        raise UsageError(f"{named[-1]}: runs that the same words made only")
+    words = [text for text in (*first, *FRESH) if name(text) not in given]
+    options = [text for text in texts if text.startswith("-")]
+    return [*options, *words, *(text for text in texts if text not in options)]
+
+
+def _recipe(run_dir: Path, config_dir: str | Path | None) -> list[str]:
+    """The words that made the run in a folder, which may come from anybody."""
+    config: DictConfig = folder.read(run_dir, "run")
+    values: Any = OmegaConf.to_container(config)
+    words, folders = values.get("recipe"), config_dir or values.get("config_dir")
+    at, flaw, kept = f"{run_dir / 'config.yaml'}: recipe", "", []
+    if isinstance(words, list) and all(isinstance(text, str) for text in words):
+        kept = [_referring(text) for text in words if name(text) not in OWN]
+        if wrong := [text for text in kept if FOREIGN.search(text)]:
+            flaw = f"{wrong[0]}: is no KEY=VALUE of a run"
+    else:
+        flaw = "must be a list of KEY=VALUE; train it again"
+    if flaw:
+        raise UsageError(f"{at}: {flaw}")
+    try:
+        made: Any = OmegaConf.to_container(configuration.load(kept, folders))
+    except (OSError, TypeError, RecursionError) as error:  # of a folder, or nested in the words
+        raise UsageError(f"{at}: cannot be composed ({type(error).__name__})") from error
+    made.pop("recipe")
+    parts.check(made, run_dir)
+    chosen = {"task": config.task, "algo": config.algo}
+    kept = [*(f"{k}={v}" for k, v in chosen.items() if k not in map(name, kept)), *kept]
+    return [search_path(folders), *kept] if folders and not config_dir else kept
+
+
+def _referring(text: str) -> str:
+    """A word of a recipe with its references, which config.yaml keeps as $(KEY)."""
+    return re.sub(r"\$\(([^)]*)\)", r"${\1}", text)
+
+
 @dataclass(frozen=True)
 class Start:
-    """What the learners of a run begin with."""
+    """Knowledge with which the learners of a run begin."""
 
     learners: Any  # [S, ...]
     memory: Any  # [S, ...]; None: that of any new run
@@ -45,42 +105,30 @@ class Start:
 
 
 def joined(starts: Sequence[Start | None]) -> Start | None:
-    """What the runs of a sweep begin with, all from the same run; None: nothing."""
+    """The start of the runs of a sweep, all from the same run; None: from nothing."""
     known = [start for start in starts if start is not None]
-    if not known:
-        return None
-    have = [start.memory for start in known]
-    each = [start.learners for start in known]
-    memory = None if have[0] is None else concatenated(have)
-    return Start(concatenated(each), memory, known[0].line)
-
-
-def concatenated(states: Sequence[Any]) -> Any:
-    """The trees [S, ...] of the learners of several runs as one."""
-    return jax.tree.map(lambda *leaves: jnp.concatenate(leaves), *states)
+    if len(known) < 2:
+        return known[0] if known else None
+    memory = None
+    if known[0].memory is not None:
+        memory = concatenated([start.memory for start in known])
+    return Start(concatenated([start.learners for start in known]), memory, known[0].line)
 
 
 def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:
-    """The new run of a checked configuration, and what it begins with; errors as `begun`."""
+    """The new run of a checked configuration, and what it begins with."""
     if config.get("run") is None:
         return configuration.built(config), None
     with folder.blame_config(Path(str(config.run)), lacking=True):
-        return begun(config)
+        return _begun(config, Path(str(config.run)))
 
 
-def begun(config: DictConfig) -> tuple[Run, Start]:
-    """The run of `config`, and what it begins with: that of the run in the folder `config.run`.
+def _begun(config: DictConfig, source: Path) -> tuple[Run, Start]:
+    """The run of `config`, and what it begins with: that of the run in `source`.
 
     The configuration gets `begun`, from which the run can be built without that folder.
-
-    Raises:
-        UsageError: if there is no such run, it has no checkpoint, or it does not fit.
-        CheckpointError: if none of its checkpoints is sound.
     """
-    source = Path(str(config.run))
     then = folder.read_trained(source, "run")
-    if config.get("distributed"):
-        raise UsageError("distributed=true: a run that begins with run=DIR has one process")
     if config.pretrain:
         raise UsageError(f"pretrain={config.pretrain}: what run={source} has learned is kept")
     numbers = _numbers(config, then, source)
@@ -110,13 +158,11 @@ def begun(config: DictConfig) -> tuple[Run, Start]:
 
 def _numbers(config: DictConfig, then: DictConfig, source: Path) -> Any:
     """[S] for each learner the number of that in `source` whose knowledge it gets."""
-    for end in checkpoint.meta(source / "checkpoints").get("record", {}).get("ends", ()):
-        raise UsageError(f"run={source}: its learner of seed {end['seed']} diverged")
-    if then.num_seeds not in (1, config.num_seeds):
-        raise UsageError(
-            f"num_seeds={config.num_seeds}: the run in run={source} has {then.num_seeds} learners; "
-            "as many can begin with what they know"
-        )
+    ends = checkpoint.meta(source / "checkpoints").get("record", {}).get("ends", ())
+    if ends or then.num_seeds not in (1, config.num_seeds):
+        ended = f"its learner of seed {ends[0]['seed']} diverged" if ends else ""
+        line = f"has {then.num_seeds} learners; num_seeds={config.num_seeds} must be as many"
+        raise UsageError(f"run={source}: {ended or line}")
     return jnp.arange(config.num_seeds) % then.num_seeds
 
 
@@ -128,9 +174,9 @@ def _learners(
         path, seeds = source / "checkpoints", _seeds(then)
         step, state, notes = read_part(path, run.agent, seeds, "learners")
     except MisfitError as error:
-        lines = changes(_values(then), _values(config))
-        world = ("env.", "episode.", "reward.")
-        own = [line for line in lines if "." in line.split()[0] and not line.startswith(world)]
+        lines = changes(_flat(then), _flat(config))
+        lines = [line for line in lines if "." in line.split()[0] and line[:6] != "begun."]
+        own = [line for line in lines if not line.startswith(("env.", "episode.", "reward."))]
         what, detail = ", ".join((own or lines)[:2]), str(error).partition("this run: ")[2]
         other = "" if what else folder.of_another_commit(source)
         raise UsageError(
@@ -139,27 +185,24 @@ def _learners(
     return step, state.learners, notes
 
 
-def _values(config: DictConfig) -> dict[str, Any]:
-    """What shapes the parameters of a run, by full keys."""
+def _flat(config: DictConfig, *names: str) -> dict[str, Any]:
+    """The values at these keys, all without names, by full keys; not of a part's own world."""
     values: Any = OmegaConf.to_container(config)
-    named = {key: value for key, value in values.items() if key not in ("begun", "expert")}
-    return {
-        key: value
-        for key, value in flatten_keys(named).items()
-        if "." in key or key in ("num_envs", "task", "algo", "total_steps")
-    }
+    chosen = {key: values[key] for key in names or values if values.get(key) is not None}
+    return {key: value for key, value in flatten_keys(chosen).items() if ".world." not in key}
 
 
 def _memory(
     agent: Agent, config: DictConfig, then: DictConfig, step: int, source: Path
 ) -> tuple[Any, str]:
     """The memory [S', ...] in checkpoint `step` if it is true in the new run, and a word on it."""
-    before, now = (_world(each) for each in (then, config))
-    if differ := [key for key in {**before, **now} if before.get(key) != now.get(key)]:
+    before, now = (_flat(made, *WORLD) for made in (then, config))
+    differ = [key for key in {**before, **now} if before.get(key) != now.get(key)]
+    if differ := [key for key in differ if key not in PASSING]:
         return None, f"{_listed(differ[:3])} differ{'' if differ[1:] else 's'}"
     if not then.checkpoint_replay:
         return None, "checkpoints of that run hold none"
-    same = _plain(then.get("reward")) == _plain(config.get("reward"))
+    same = _flat(then, "reward") == _flat(config, "reward")
     if not same and not _follows(agent.episode):
         return None, "reward differs"
     path = source / "checkpoints"
@@ -173,22 +216,8 @@ def _seeds(config: DictConfig) -> tuple[int, ...]:
     return tuple(range(config.seed, config.seed + config.num_seeds))
 
 
-def _world(config: DictConfig) -> dict[str, Any]:
-    """What the decisions in a memory depend on, by full keys."""
-    values: Any = OmegaConf.to_container(config)
-    world = flatten_keys({key: values[key] for key in WORLD if key in values})
-    return {key: value for key, value in world.items() if key not in PASSING}
-
-
-def _plain(part: Any) -> Any:
-    """The values of a part by full keys, without its copy of the world."""
-    values: Any = OmegaConf.to_container(part) if isinstance(part, DictConfig) else {}
-    flat = flatten_keys(values)
-    return {key: value for key, value in flat.items() if not key.startswith("world.")}
-
-
 def _follows(episode: Episode) -> bool:
-    """Whether what the episodes pay follows from what a memory holds."""
+    """True if the rewards of the episodes follow from the decisions in a memory."""
     exact = not episode.delay and not episode.action_noise and episode.sensor_noise == 0.0
     return exact and episode.relabels
 

@@ -6,8 +6,6 @@ Until then nothing changes, so a run without it is the same up to there. Linear 
 training is the cooldown of Hagele et al. 2024.
 """
 
-from typing import Any
-
 import jax.numpy as jnp
 from jax import Array
 
@@ -27,6 +25,7 @@ class LinearDecay:
 
     def factor(self, decisions: Array) -> Array:
         """The factor [] of learning rates, so many decisions [] into the run."""
-        whole: Any = self.decisions
+        whole = self.decisions
+        assert whole is not None  # as __post_init__ has checked
         left = (whole - decisions) / (self.share * whole)
         return jnp.clip(left, 0.0, 1.0)

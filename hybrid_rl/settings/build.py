@@ -217,8 +217,6 @@ def _episode(parts: DictConfig) -> tuple[Episode, tuple[str, ...]]:
     """The episodes of the sections `env` and `episode`, and notes about a world of the user's."""
     env = _instantiate(parts.env, "env")
     notes = check_world(env)
-    if not type(env).__module__.startswith("hybrid_rl.") and "steps" not in parts.episode:
-        notes += (f"episode.steps is not set by the task: {Episode.steps:,} decisions an episode",)
     target = {"_target_": "hybrid_rl.training.episode.Episode", "env": env}
     given = target | _instantiate(parts.episode, "episode")
     given |= {name: _instantiate(parts.get(name) or None, name) for name in PAID}

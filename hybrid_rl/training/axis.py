@@ -64,10 +64,6 @@ class Axis:
             object.__setattr__(made, name, value)
         return made
 
-    def alone(self, path: str) -> "Axis":
-        """The axis with the numbers of one path only."""
-        return Axis(self.count, {path: self.numbers[path]}, self.names)
-
 
 def _differing(nodes: Sequence[Any], path: str, kind: Any = float) -> Iterator[tuple[str, Any]]:
     """The paths at which trees have different numbers, and these; kind: type of the field."""

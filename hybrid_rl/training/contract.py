@@ -13,36 +13,25 @@ import jax.numpy as jnp
 
 from hybrid_rl.core import lifting
 from hybrid_rl.data.trained import SavedPolicy
-from hybrid_rl.errors import PartError
 from hybrid_rl.protocols import (
     Controller,
     Features,
-    LatestLearner,
+    Learner,
     Model,
     Objective,
     UniformLearner,
 )
-from hybrid_rl.protocols.contract import (
-    Contract,
-    has_users,
-    leaves,
-    of_user,
-    parts,
-    signatures,
-    words,
-)
-from hybrid_rl.types import Params
+from hybrid_rl.protocols.contract import Contract, has_users, leaves, of_user, parts, words
+from hybrid_rl.types import Params, Spec
 
-LEARNERS = {"uniform": UniformLearner, "latest": LatestLearner}
 ROLES = {"model": Model, "objective": Objective}  # of a field without a type
 OWNED = tuple(name for name in Params._fields if name not in ("decisions", "world"))
 LEARNED = {"model", "reward", "policy", "critic"}  # fields of Params with parts of their own
-LOGGED = ("step", "seed", "wall_s", "world/reward", "world/obs", "world/action")  # of every row
 
 
 def needs_world(controller: Any) -> bool:
     """Whether a controller plans from the state of the world, where a model in it starts."""
-    return any(callable(getattr(part, "start", None)) for *_, part in parts(controller))
+    return any(lifting.is_world(part) for *_, part in parts(controller))
 
 
 def check_members(agent: Any) -> None:
@@ -55,18 +44,16 @@ def check_members(agent: Any) -> None:
     """
     if agent.replay.num_demonstrated(agent.num_envs):
         agent.episode.check_demonstrations()
-    values = {"spec": agent.spec}
-    Contract(agent.controller, Controller, values).check_members()
+    Contract(agent.controller, Controller, agent.spec).check_members()
     owners: dict[str, str] = {}
     for name, learner in agent.learners.items():
-        of = Contract(learner, LEARNERS.get(getattr(learner, "data", ""), UniformLearner), values)
+        of = Contract(learner, _kind(learner), agent.spec)
         of.check_members()
-        if learner.data not in LEARNERS:
-            line = f'data is {learner.data!r}; it must be "uniform" or "latest"'
-            raise PartError(f"{of.source.at()}: {line}")
+        if learner.data not in ("uniform", "latest"):
+            of.refuse("", f'data is {learner.data!r}; it must be "uniform" or "latest"')
         if not isinstance(learner.owns, tuple) or not {*learner.owns} <= {*OWNED}:
             must = f"it must be a tuple of fields of Params: {', '.join(OWNED)}"
-            raise PartError(f"{of.source.at()}: owns is {learner.owns!r}; {must}")
+            of.refuse("", f"owns is {learner.owns!r}; {must}")
         for field in learner.owns:
             if field in owners:
                 both = f"{owners[field]} and {name}"
@@ -87,69 +74,67 @@ def check(agent: Any, controllers: Iterable[Any]) -> None:
     contracts = [*_contracts(whole, agent.spec)]
     for of in contracts:
         of.check_members()
-    check_owners(whole, owned, agent.spec)
     for of in contracts:
         if {Model, Features} & {*of.protocol.__mro__} and of_user(of.part):
             of.check()
     model = getattr(owned.get("model"), "model", None)
-    spec, learned, learning = lifting.lifted_spec(model, agent.spec), {}, []
+    learned, learning = {}, []
     for learner in agent.learners.values():
         own = lifting.lifted_spec(agent._lifting(learner), agent.spec)
-        of = Contract(learner, LEARNERS[learner.data], {"spec": own}).check("init", "params")
+        of = Contract(learner, _kind(learner), own)
+        of.check()
         given = of.values["owned"]
-        if not isinstance(given, Mapping) or {*given} != {*learner.owns}:
+        if {*given} != {*learner.owns}:
             line = f"returned {sorted(given)}; it must be a dict of what it owns, {learner.owns}"
             of.refuse("params", line)
         learned |= given
         learning.append(of)
-    check_fit(whole, learned, spec)
+    check_parameters(whole, learned, lifting.lifted_spec(model, agent.spec))
     params = Params(**learned)._replace(decisions=jax.ShapeDtypeStruct((), jnp.int32))
-    names: dict[str, str] = dict.fromkeys(LOGGED, "every row")
     if has_users(whole):
         memory = jax.eval_shape(lambda: agent.replay.init(agent.spec, agent.num_envs))
         for of in learning:
-            of.values |= {"Params": params}
+            of.values["Params"] = params
             of.values["batch"] = jax.eval_shape(
                 lambda *given, of=of: agent._batch(given[0], of.part, *given[1:]),
                 *(memory, params, of.values["key"]),
             )
-            _check_names(of, of.trace("update", signatures(of.protocol)["update"], True), names)
-    check_acting(agent, whole, params, names)
+            of.trace("update")
+    check_acting(agent, whole, params)
 
 
-def check_acting(agent: Any, whole: Iterable[Any], params: Params, names: Any = ()) -> None:
-    """Raise PartError unless parts fit their protocols, and controllers of the user's act.
-
-    names: of metrics before those of the controllers -> their class.
-    """
+def check_acting(agent: Any, whole: Iterable[Any], params: Params) -> None:
+    """Raise PartError unless parts fit their protocols, and controllers of the user's act."""
     whole, env = [*whole], jax.eval_shape(agent.episode.reset, jax.random.key(0))
     params = params._replace(world=env)
     model = next((part for _, name, _, part in parts(whole) if name == "model" and part), None)
     spec = lifting.lifted_spec(model if not needs_world(model) else None, agent.spec)
     for of in _contracts(whole, spec):
-        others = {Model, Features, *LEARNERS.values()} & {*of.protocol.__mro__}
+        others = {Model, Features, Learner} & {*of.protocol.__mro__}
         if of_user(of.part) and not others:
-            own = getattr(of.owner, "model", None)
+            own = getattr(of.owner, "model", None) or model
             of.values["Params"] = params
             of.values["x"] = jax.eval_shape(
-                lambda p, own=own: _start(own, model, p, env.obs), params
+                lambda p, own=own: env.obs if own is None else lifting.start(own, p, env.obs),
+                params,
             )
             of.check()
     for controller in (each for each in whole if not callable(getattr(each, "update", None))):
-        values = {"spec": agent.spec, "Params": params}
-        of = Contract(controller, Controller, values)
+        of = Contract(controller, Controller, agent.spec)
         of.check_members()
         greedy = of.source.blamed("greedy", controller.greedy)
-        if callable(getattr(greedy, "act", None)) is False:
+        if not callable(getattr(greedy, "act", None)):
             of.refuse("greedy", f"returned {words(greedy)}; it must be a controller")
-        if has_users(whole):
-            for each in (controller, greedy):
-                of = Contract(each, Controller, values).check("init")
-                acted = of.trace("act", signatures(Controller)["act"], True)
-                _check_names(of, acted, {**dict(names)} if each is controller else {})
+        for acting in (controller, greedy) if has_users(whole) else ():
+            Contract(acting, Controller, agent.spec, values={"Params": params}).check()
 
 
-def _contracts(whole: Any, spec: Any) -> Iterator[Contract]:
+def _kind(learner: Any) -> type:
+    """The protocol of a learner."""
+    return Learner if getattr(learner, "data", "") == "latest" else UniformLearner
+
+
+def _contracts(whole: Any, spec: Spec) -> Iterator[Contract]:
     """The contract of each part in these parts with the protocol of its field; inner ones first.
 
     A field of the user's without a type has the protocol of its name.
@@ -157,48 +142,27 @@ def _contracts(whole: Any, spec: Any) -> Iterator[Contract]:
     for owner, name, protocol, part in reversed([*parts(whole)]):
         protocol = protocol or (ROLES.get(name) if of_user(owner) else None)
         if protocol is not None:
-            yield Contract(part, protocol, {"spec": spec}, owner=owner, field=name)
+            yield Contract(part, protocol, spec, owner=owner, name=name)
 
 
-def _start(own: Any, model: Any, params: Params, obs: Any) -> Any:
-    """The planning state in which the paths of an objective begin."""
-    model = model if own is None else own
-    return obs if model is None else lifting.start(model, params, obs)
-
-
-def _check_names(of: Contract, traced: Any, names: dict[str, str]) -> None:
-    """Raise PartError for a metric of the user's with the name of another one."""
-    for name in traced.out_info[-1]:
-        if name in names and of_user(of.part):
-            line = f"metric {name}: {names[name]} has it, too; write mine/{name}"
-            raise PartError(f"{of.source.at()}: {line}")
-        names[name] = type(of.part).__name__
-
-
-def check_owners(whole: Any, owned: Mapping[str, Any], spec: Any) -> None:
-    """Raise ValueError for a policy, model or the like with parameters that no learner gives."""
+def check_parameters(whole: Any, learned: Mapping[str, Any], spec: Spec) -> None:
+    """Raise ValueError for a policy, model or the like that no learner trains, or another form."""
     for owner, name, part in _with_parameters(whole):
-        if name not in owned and _parameters(part, spec):
-            uses = "learns with" if callable(getattr(owner, "update", None)) else "acts by"
-            line = f"{type(owner).__name__} {uses} it, and no learner of this method trains it"
-            remedy = f"leave {name}= out, or choose a method that learns a {name}"
-            raise ValueError(f"{name}={type(part).__name__}: {line}; {remedy}")
-
-
-def check_fit(whole: Any, learned: Mapping[str, Any], spec: Any) -> None:
-    """Raise ValueError for a policy, model or the like with parameters of another form."""
-    for owner, name, part in _with_parameters(whole):
-        if name not in learned or of_user(owner) or of_user(part):
+        needs, has = _parameters(part, spec), leaves(learned.get(name))
+        uses = "learns with" if callable(getattr(owner, "update", None)) else "acts by"
+        line = f"{name}={type(part).__name__}: {type(owner).__name__} {uses} it"
+        if needs and name not in learned:
+            line += f", and no learner of this method trains it; leave {name}= out, or choose"
+            raise ValueError(f"{line} a method that learns a {name}")
+        if of_user(owner) or of_user(part):
             continue
-        needs, has = _parameters(part, spec), leaves(learned[name])
         for at in needs:
             if needs[at] != has.get(at):
                 differ = f"{needs[at]} in it and {has.get(at)} in the learner's"
-                line = f"{type(owner).__name__} uses it, but {at} is {differ}"
-                raise ValueError(f"{name}={type(part).__name__}: {line}; give both the same {name}")
+                raise ValueError(f"{line}, but {at} is {differ}; give both the same {name}")
 
 
-def _parameters(part: Any, spec: Any) -> dict[str, str]:
+def _parameters(part: Any, spec: Spec) -> dict[str, str]:
     """Path of each parameter of a part -> its type."""
     return leaves(jax.eval_shape(lambda key: part.init(key, spec), jax.random.key(0)))
 

@@ -75,8 +75,8 @@ class Loop:
 
     def shard(self, f: Callable[..., Any], ins: Any, outs: Any, **options: Any) -> Any:
         """`jit(f)`, run on every device with its share of the learners."""
-        parts: Any = jax.shard_map(f, mesh=self.mesh, in_specs=ins, out_specs=outs, check_vma=False)
-        return jax.jit(parts, **options)
+        run = jax.shard_map(f, mesh=self.mesh, in_specs=ins, out_specs=outs, check_vma=False)
+        return jax.jit(run, **options)
 
     def on_devices(self, state: AgentState) -> AgentState:
         """`state` moved from the host to the devices."""

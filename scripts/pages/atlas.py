@@ -13,7 +13,7 @@ from scripts.pages.machines import machine
 from scripts.pages.values import RESULTS, evaluated, read
 
 DOCS = RESULTS.parent
-MORE = "Numbers, seeds, machines and commands"
+MORE = "Numbers, seeds, machines"
 VERDICTS = ("holds", "holds in part", "does not hold", "nothing to test")
 INTRODUCTION = """# Atlas: every figure and table of the thesis
 
@@ -21,9 +21,8 @@ INTRODUCTION = """# Atlas: every figure and table of the thesis
 
 I. Abraham, *Optimal Experimental Learning and Infinite Linear Embeddings*, Northwestern
 University, 2020: what each figure and table claims, and what we found. A picture leads to the
-page with bands, settings and reservations; numbers, seeds, machines and commands are below the
-pictures of each chapter. Which numbers of a row "as printed" are ours, and how the baselines were
-tuned: [printed, and ours](results/printed.md).
+page with bands, settings and commands. How the baselines were tuned: [printed, and
+ours](results/printed.md).
 """
 
 
@@ -37,19 +36,26 @@ def filled(text: str) -> str:
     return re.sub(r"\{([^{}]+?):([^{}:]*)\}", lambda m: format(evaluated(m[1])[0], m[2]), text)
 
 
-def seeds(entry: dict[str, Any]) -> str:
-    """Seeds or trials of an entry, from the first of its JSON that has them."""
-    if "seeds" in entry:
-        return entry["seeds"]
-    for data in map(read, entry["results"]):
-        for key, found in _items(data):
-            if key == "seeds" and isinstance(found, list):
-                return f"{found[0]} to {found[-1]}"
-            if key in ("seeds", "trials", "draws"):
-                return f"{found}" if key == "seeds" else f"{found} {key}"
-            if key == "asked":  # of figure 6-9: one number of queries for each seed
-                return f"{len(found)}"
-    raise ValueError(f"no seeds in {entry['results']}")
+def seeds(stem: str) -> str:
+    """Seeds or trials of docs/results/STEM.json, or nothing."""
+    for key, found in _items(read(stem)):
+        if key == "seeds" and isinstance(found, list):
+            return f"seeds {found[0]} to {found[-1]}"
+        if key in ("seeds", "trials", "draws"):
+            return f"{found} {key}"
+        if key == "asked":  # of figure 6-9: one number of queries for each seed
+            return f"{len(found)} seeds"
+    return ""
+
+
+def sources(entry: dict[str, Any]) -> str:
+    """The JSON of an entry, those of the same seeds and machine together."""
+    groups: dict[str, list[str]] = {}
+    for stem in entry["results"]:
+        measured = ", ".join(filter(None, [seeds(stem), machine(stem)]))
+        groups.setdefault(measured, []).append(f"[{stem}](results/{stem}.json)")
+    texts = [f"{measured}: {', '.join(files)}" for measured, files in groups.items()]
+    return "; ".join(texts)
 
 
 def _items(data: Any) -> Iterator[tuple[str, Any]]:
@@ -62,31 +68,6 @@ def _items(data: Any) -> Iterator[tuple[str, Any]]:
         for value in data.values():
             if isinstance(value, dict | list):
                 yield from _items(value)
-
-
-def section(page: str) -> str:
-    """The text of FILE.md#ANCHOR, to the next heading of its level."""
-    file, _, anchor = page.partition("#")
-    parts = re.split(r"^(#+ .+)$", (DOCS / file).read_text(encoding="utf-8"), flags=re.MULTILINE)
-    text, level = "", 0
-    for heading, body in zip(parts[1::2], parts[2::2], strict=True):
-        marks, _, title = heading.partition(" ")
-        if level and len(marks) <= level:
-            break
-        if level or _anchor(title) == anchor:
-            level = level or len(marks)
-            text += heading + body
-    if not level:
-        raise ValueError(f"no section: {page}")
-    return text
-
-
-def command(page: str, words: str) -> str:
-    """The first line with these words among the commands of a section."""
-    for line in section(page).splitlines():
-        if re.match(r"\s*python ", line) and words in line:
-            return line.strip()
-    raise ValueError(f"no command with {words!r} in {page}")
 
 
 def picture(entry: dict[str, Any]) -> str:
@@ -105,7 +86,7 @@ def gallery(chapter: dict[str, dict[str, Any]]) -> str:
 
 
 def _cell(name: str, entry: dict[str, Any]) -> str:
-    shown = f"[![{name}: {entry['title']}]({picture(entry)})]({entry['page']}) <br> "
+    shown = f"[![{entry['title']}]({picture(entry)})]({entry['page']}) <br> "
     verdict = f"**{entry['verdict'].capitalize()}**"
     brief = f": {entry['brief']}" if "brief" in entry else ""
     anchor = _anchor(f"{name}: {entry['title']}")
@@ -120,13 +101,7 @@ def entry_text(name: str, entry: dict[str, Any]) -> str:
     verdict = f"{verdict.capitalize()}{', with' if verdict == 'holds in part' else ':'}"
     text += f"**{verdict}** {shows} [More]({entry['page']})\n"
     if entry["results"]:
-        files = ", ".join(f"[{stem}](results/{stem}.json)" for stem in entry["results"])
-        text += (
-            f"\nSeeds: {seeds(entry)}. Machine: {machine(entry['results'][0])}. Numbers: {files}.\n"
-        )
-    if entry["commands"]:
-        lines = [command(entry["page"], words) for words in entry["commands"]]
-        text += "\n```\n" + "\n".join(lines) + "\n```\n"
+        text += f"\nNumbers: {sources(entry)}.\n"
     return text
 
 

@@ -19,8 +19,7 @@ prose. {row} is what `rows` has for the row's label or for its longest beginning
 numbers. A row without a label has the one above it, and the second column is part of the label if
 it has no header.
 
-Before a table that is written whole: <!-- rows Chapter 3 --> for printed.yaml,
-<!-- doctor audited --> for what the doctor prints, <!-- leaves --> for which_method.yaml, and
+Before a table that is written whole: <!-- leaves --> for which_method.yaml, and
 <!-- community --> for the files of the folder community.
 
 A text or a cell may show the first of the expression's numbers only. They are written with the
@@ -35,7 +34,7 @@ from typing import Any
 
 import yaml
 
-from scripts.pages import community, examined, leaves, printed
+from scripts.pages import community, leaves
 from scripts.pages.values import evaluated
 
 TABLES = Path(__file__).resolve().parents[2] / "docs" / "tables.yaml"
@@ -43,8 +42,6 @@ NUMBER = re.compile(r"(?<![\w.])(?:(?<!\d )-)?(?:\d{1,3}(?:,\d{3})+|\d+)(?:\.\d+
 INLINE = re.compile(r"(<!-- = )(.+?)( -->)(.*?)(<!-- / -->)", re.DOTALL)
 TABLE = re.compile(r"(<!-- table (\S+) -->\n)((?:\|.*\n){3,})")
 WRITERS: dict[str, Callable[..., str]] = {  # word of a mark -> the table of the words after it
-    "rows": printed.table,
-    "doctor": examined.table,
     "leaves": leaves.table,
     "community": community.table,
 }

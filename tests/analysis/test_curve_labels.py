@@ -42,6 +42,15 @@ def test_only_parts_that_are_built_are_compared(tmp_path):
     ]
 
 
+def test_another_reward_is_another_curve(tmp_path):
+    """Of runs that were built, too, where only what they were built from counts."""
+    rewards = ["null", "{_target_: a.Aim, target: 1}", "{_target_: a.Aim, target: 2}"]
+    for seed, reward in enumerate(rewards):
+        built = {"controllers": "{full: {_target_: a.Planner}}", "unread": f"{{u: {seed}}}"}
+        run(tmp_path / str(seed), [1.0], seed, reward=reward, **built)
+    assert len(curves(tmp_path)) == 3
+
+
 def test_another_class_is_one_difference(tmp_path):
     for seed, part in enumerate(["{_target_: a.b.Gaussian}", "{_target_: a.Ensemble, members: 5}"]):
         run(tmp_path / str(seed), [1.0], seed, model=part)

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hybrid_rl.analysis import long_table
+from hybrid_rl.analysis import tables
 from hybrid_rl.analysis.curves import area, band, curves, improvement, iqm, steps_to
 from hybrid_rl.analysis.learning_curves import FEW, comparisons, figure, summary
 from hybrid_rl.analysis.results import find
@@ -193,9 +193,6 @@ def test_of_a_loss_a_failed_learner_has_no_value(tmp_path):
         ("metrics.jsonl", b"[1]\n", "line 1 is no row of metrics"),
         ("metrics.jsonl", b"\xa0\xff\n", "line 1 is no row of metrics"),
         ("metrics.jsonl", b"", "metrics.jsonl: no row of metrics yet"),
-        ("config.yaml", b"a: [\n", "config.yaml: line 2 is no YAML"),
-        ("config.yaml", b"", "config.yaml: is empty, or no group of keys"),
-        ("config.yaml", b"\xa0\xff", "config.yaml: is not text"),
         ("summary.json", b"{", "summary.json: is not JSON"),
     ],
 )
@@ -225,7 +222,7 @@ def test_smoothing_is_a_moving_mean_of_that_many_steps(tmp_path):
 def test_wall_time_is_an_x(tmp_path):
     (curve,) = curves(run(tmp_path / "a", [5.0, 6]), x="wall_s")
     assert curve.x.tolist() == [0.1, 0.2]
-    with pytest.raises(UsageError, match="x=hours: must be step, wall_s, or a number"):
+    with pytest.raises(UsageError, match="x=hours: not in "):
         curves(tmp_path, x="hours")
 
 
@@ -239,7 +236,7 @@ def test_a_swept_number_is_an_x(tmp_path):
     assert (curve.x.tolist(), curve.seeds) == ([2, 5, 10], (0, 1))
     assert curve.each.tolist() == [[3, 4, 7], [5, 6, 9]]
     assert curve.iqm.tolist() == [4, 5, 8]
-    with pytest.raises(UsageError, match="x=task: must be step, wall_s, or a number"):
+    with pytest.raises(UsageError, match=r"x=task: must be a number; .* has hopper"):
         curves(tmp_path, x="task")
 
 
@@ -282,7 +279,7 @@ def test_the_page_makes_a_table_of_what_stable_baselines_saves(tmp_path, monkeyp
         np.savez(tmp_path / f"logs/{seed}/evaluations.npz", **saved)
     page = (Path(__file__).parents[2] / "docs" / "faq.md").read_text(encoding="utf-8")
     exec(page.split("EvalCallback")[1].split("```python\n")[1].split("```")[0], {})
-    (got,) = long_table.read("sb3.csv", "eval/return", ["halfcheetah"])
+    (got,) = tables.read("sb3.csv", "eval/return", ["halfcheetah"])
     assert (got.label, sorted(got.seeds)) == ("SAC of SB3 (sb3.csv)", [3, 4])
     np.testing.assert_allclose(sorted(got.each.tolist()), [[1.5, 3], [1.5, 4]])
 

@@ -9,13 +9,15 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 import tiny
-from tiny import call, only_line
+from tiny import call
 
 from hybrid_rl import figures
 from hybrid_rl.analysis import held_out
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.pendulum import Pendulum
+from hybrid_rl.errors import UsageError
 from hybrid_rl.models.gaussian import Gaussian
+from hybrid_rl.run.saved import load
 from hybrid_rl.types import Params, Spec
 
 
@@ -58,7 +60,7 @@ def test_the_study_measures_each_seed_on_both_kinds_of_decisions(folder: Path) -
 
 def test_held_out_decisions_are_transitions_of_the_task(folder: Path) -> None:
     """The pendulum's own dynamics lead from each observation to the next one, for both kinds."""
-    data = held_out.held_out([held_out.restored(folder)], 50)
+    data = held_out.held_out([load(folder, "runs")], 50)
     assert sorted(data) == sorted(held_out.SETS)
     for obs, action, after in data.values():
         assert obs.shape == (50, 3)
@@ -66,11 +68,9 @@ def test_held_out_decisions_are_transitions_of_the_task(folder: Path) -> None:
         np.testing.assert_allclose(after, want, atol=1e-4)
 
 
-def test_a_run_without_a_model_is_refused(
-    tmp_path: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
-    """In one line."""
-    tiny.run(tmp_path / "sac", "algo=sac", "total_steps=100")
-    capfd.readouterr()
-    assert call(lambda: command.run(figures.main), "study=held_out", f"runs={tmp_path}/sac") == 2
-    assert "has no learned model" in only_line(capfd)
+def test_a_run_without_a_model_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    run = SimpleNamespace(task="pendulum", params=Params())
+    monkeypatch.setattr(held_out, "find", lambda runs: [Path("runs/a")])
+    monkeypatch.setattr(held_out, "load", lambda *_: run)
+    with pytest.raises(UsageError, match=r"^runs=runs/a: .* learned model"):
+        held_out.figure("runs/a")

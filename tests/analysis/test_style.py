@@ -3,22 +3,25 @@
 import json
 from pathlib import Path
 
+import matplotlib
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from hybrid_rl.analysis.results import redrawn
 from hybrid_rl.analysis.style import (
     COLOURS,
     METHODS,
     STROKES,
+    STYLE,
     VERMILION,
     colours,
     legend_below,
     line_styles,
     words,
 )
-from hybrid_rl.figures import redrawn, study_of
+from hybrid_rl.figures import study_of
 
 RESULTS = Path(__file__).parents[2] / "docs" / "results"
 REDRAWN = {  # study -> some of the JSON files from which it draws
@@ -110,7 +113,8 @@ def test_labels_are_words(label, shown):
 )
 def test_a_picture_is_drawn_again_from_its_json(study, name):
     """In it no two named lines have the same style, and no text is smaller than 7 pixels at 700."""
-    figure, numbers = redrawn(study_of(study), str(RESULTS / f"{name}.json"))
+    with matplotlib.rc_context(STYLE):
+        figure, numbers = redrawn(RESULTS / f"{name}.json", "from", study_of(study).draw)
     assert numbers == json.loads((RESULTS / f"{name}.json").read_text())
     assert 8 / 72 * 700 / figure.get_figwidth() >= 7
     for axes in figure.axes:

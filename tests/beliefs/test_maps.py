@@ -11,7 +11,6 @@ from hybrid_rl.beliefs.maps import learned
 from hybrid_rl.beliefs.maps.known import KnownMap
 from hybrid_rl.beliefs.maps.learned import LearnedMap
 from hybrid_rl.envs.analytic.contact_plane import ContactPlane
-from hybrid_rl.envs.analytic.point_mass import PointMass
 
 DISC = ContactPlane(objects=((0.5, 0.5, 0.0, 0.2, 0.2, 0.2),))
 
@@ -30,13 +29,6 @@ def test_the_known_map_steps_where_the_robot_touches() -> None:
     angle = np.arctan2(*(known.outline - 0.5).T)
     assert np.histogram(angle, 8, (-np.pi, np.pi))[0].min() > 5
     assert known.middle == (0.5, 0.5)
-
-
-def test_a_world_without_contacts_is_refused() -> None:
-    with pytest.raises(ValueError, match="needs contacts"):
-        KnownMap(PointMass())
-    with pytest.raises(ValueError, match="no objects to touch"):
-        _ = KnownMap(ContactPlane(objects=())).outline
 
 
 @pytest.fixture

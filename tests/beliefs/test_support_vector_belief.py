@@ -6,6 +6,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from toys import begun
 
 from hybrid_rl.beliefs.support_vectors import SupportVectors
 from hybrid_rl.types import Spec
@@ -25,7 +26,7 @@ def measured():
     def one(state, point):
         return BELIEF.add(state, *point, None), BELIEF.loss(state, *point)
 
-    first = BELIEF.init(jax.random.key(0), SPEC)
+    first = begun(BELIEF, SPEC)
     return jax.jit(lambda: jax.lax.scan(one, first, (jnp.asarray(s), jnp.asarray(y))))()
 
 
@@ -75,7 +76,7 @@ def test_losses_are_those_before_the_measurement_and_fall(measured) -> None:
 
 def test_a_belief_without_contact_is_uniform() -> None:
     """f = -1 before any measurement and after zeros alone."""
-    state = BELIEF.init(jax.random.key(0), SPEC)
+    state = begun(BELIEF, SPEC)
     for _ in range(2):
         points = jax.random.uniform(jax.random.key(1), (10, 2))
         np.testing.assert_array_equal(jax.vmap(decision, (None, 0))(state, points), -1)
@@ -85,16 +86,10 @@ def test_a_belief_without_contact_is_uniform() -> None:
 def test_a_full_memory_is_reported() -> None:
     """It keeps adding weight."""
     belief = SupportVectors(capacity=3)
-    state = belief.init(jax.random.key(0), SPEC)
+    state = begun(belief, SPEC)
     more = jax.jit(belief.add)
     for i in range(5):
         state = more(state, jnp.array([0.1 * i, 0.0]), jnp.float32(0), None)
     report = belief.report(state)
     assert (float(report["belief/full"]), float(report["belief/points"])) == (1, 3)
     assert float(state.weight.sum()) == 5
-
-
-@pytest.mark.parametrize("field", [{"cost": 0.0}, {"apart": -1.0}, {"measure": "det"}])
-def test_bad_fields_are_refused(field) -> None:
-    with pytest.raises(ValueError, match=f"{next(iter(field))}="):
-        SupportVectors(**field)

@@ -6,8 +6,6 @@ import pytest
 
 from hybrid_rl.constraints.effort import Effort
 from hybrid_rl.constraints.limit import Limit
-from hybrid_rl.envs.analytic.pendulum import Pendulum
-from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.envs.quadcopter import Quadcopter
 
 FLYING = Quadcopter(physics="native")
@@ -42,31 +40,3 @@ def test_effort_is_the_largest_entry_of_an_action() -> None:
     o = jnp.zeros(3)
     for u, want in (([0.2, -0.9], 0.4), ([0.2, 0.1], -0.3)):
         assert float(Effort(0.5).excess(o, jnp.array(u), o)) == pytest.approx(want)
-
-
-@pytest.mark.parametrize(
-    ("fields", "line"),
-    [
-        ({"quantity": "wind", "most": 1.0}, "quantity=wind: choose one of spin, velocity, motion"),
-        ({}, "most=null: limits nothing; give most, least or both"),
-        ({"most": (None, None, None)}, "limits nothing"),
-        ({"most": (1.0, 2.0)}, r"most=\[1.0, 2.0\]: velocity needs 3 numbers"),
-        ({"least": (1.0, 2.0, 3.0), "norm": True}, "the norm of velocity needs 1 number"),
-        ({"most": 0.0, "least": 1.0}, "most=0.0: must be at least least=1.0"),
-        ({"most": (1.0, 1.0, 1.0), "least": (0.0, 2.0, 0.0)}, "must be at least least="),
-        ({"most": 1.0, "width": 0.0}, "width=0.0: must be above 0"),
-        ({"most": 1.0, "price": -1.0}, "price=-1.0: must be 0 or more"),
-        ({"most": 1.0, "chance": 1.0}, r"chance=1.0: must lie in \(0, 1\)"),
-    ],
-)
-def test_what_limits_nothing_or_everything_is_refused(fields, line) -> None:
-    with pytest.raises(ValueError, match=line):
-        Limit(FLYING, **{"quantity": "velocity", **fields})
-
-
-def test_an_environment_needs_the_quantity() -> None:
-    with pytest.raises(ValueError, match="choose one of height, pitch, speed"):
-        Limit(HalfCheetah(physics="native"), "position", 1.0)
-    with pytest.raises(ValueError, match="needs an environment with `quantities`"):
-        Limit(object(), "speed", 1.0)
-    Limit(Pendulum(), "speed", 1.0)

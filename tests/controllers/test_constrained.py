@@ -9,6 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from jax import Array
+from toys import Acting, begun
 
 from hybrid_rl.constraints.effort import Effort
 from hybrid_rl.constraints.limit import Limit
@@ -31,29 +32,24 @@ class Sledge:
     spec: Spec = Spec(obs=1, act=1, dt=0.1)
 
     def reset(self, key: Array) -> EnvState:
-        """At rest."""
         no = jnp.zeros((), bool)
         return EnvState((), jnp.zeros(1), jnp.zeros(()), no, no)
 
     def step(self, state: EnvState, action: Array) -> EnvState:
-        """One decision."""
         after = self.dynamics(state.obs, action)
         return state.replace(obs=after, reward=after[0])
 
     def dynamics(self, x: Array, u: Array) -> Array:
-        """The next v [1]."""
         return x + 0.2 * u
 
     def reward_of(self, x: Array, u: Array, after: Array) -> Array:
-        """The speed []."""
         return after[0]
 
     def quantities(self, obs: Array) -> dict[str, Array]:
-        """The speed []."""
         return {"speed": obs[0]}
 
 
-WORLD = Sledge()
+WORLD, FULL = Sledge(), Acting(1.0)
 LIMIT = Limit(WORLD, "speed", 1.0, width=0.02, price=100.0)
 PLANNER = GradientController(
     Exact(WORLD), PredictedReturn(KnownReward(WORLD)), horizon=6, tail=0, noise=0.5, quiet=0.0
@@ -115,15 +111,8 @@ def test_the_order_of_candidates() -> None:
 
 def test_violations_in_the_tail_have_their_price_and_no_chance() -> None:
     """A policy that accelerates is beyond 0.9 from the fifth of ten decisions on."""
-
-    @dataclass(frozen=True)
-    class Onward:
-        def mean(self, params: Any, x: Array) -> Array:
-            """Full power."""
-            return jnp.ones(1)
-
     limit = replace(LIMIT, most=0.9)
-    planner = replace(PLANNER, policy=Onward(), horizon=2, tail=8, constraint=limit)
+    planner = replace(PLANNER, policy=FULL, horizon=2, tail=8, constraint=limit)
     x, u, key = jnp.zeros(1), jnp.zeros(1), jax.random.key(0)
     value, _ = planner.objective.prepare(Params(), planner.objective.init(WORLD.spec), x, u, key)
     found = planner._scored(Params(), value, x, Candidate(jnp.ones(()), jnp.zeros((2, 1))))
@@ -135,7 +124,7 @@ def test_violations_in_the_tail_have_their_price_and_no_chance() -> None:
 def test_the_probability_is_the_mean_over_the_members() -> None:
     """sigmoid((v' - 1) / w) of each member's own prediction, by hand."""
     model = Ensemble(Gaussian(hidden=(8,)), members=3)
-    params = Params(model=model.init(jax.random.key(2), WORLD.spec))
+    params = Params(model=begun(model, WORLD.spec, 2))
     x, u = jnp.array([0.9]), jnp.array([0.3])
     limit = Limit(WORLD, "speed", 1.0, width=0.3)
     planner = replace(PLANNER, model=model, constraint=limit)

@@ -1,6 +1,5 @@
 """The sampling controller with known candidates."""
 
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -9,62 +8,17 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from jax import Array
-from test_adjoint_controller import SPEC, Cart, Speed
+from toys import SPEC, Acting, Cart, Fast, Grid, begun, speed
 
-from hybrid_rl.controllers.refits import RefitsController
 from hybrid_rl.controllers.sampling import SamplingController
 from hybrid_rl.core import sampling
 from hybrid_rl.objectives.predicted_return import PredictedReturn
-from hybrid_rl.proposals.mixture import MixtureProposal
 from hybrid_rl.proposals.noise import NoiseProposal
 from hybrid_rl.rewards.network import RewardNetwork
-from hybrid_rl.types import Params, Path, Spec
+from hybrid_rl.types import Params, Path
 
 X = jnp.array([0.3, -0.4])
 T, K = 3, 4
-
-
-@dataclass(frozen=True)
-class Grid:
-    """Candidate k has u = k / K at all times."""
-
-    def init(self, spec: Spec, quantile: Array) -> Array:
-        """The action."""
-        return quantile
-
-    def shaped(self, noise: Array) -> Array:
-        """The noise itself."""
-        return noise
-
-    def __call__(self, params: Params, carry: Array, x: Array, plan: Array, noise: Array) -> tuple:
-        """The constant action."""
-        return jnp.full(1, carry), jnp.zeros(()), carry
-
-
-@dataclass(frozen=True)
-class Closing:
-    """A policy of zero action, and a critic of constant value 250."""
-
-    def mean(self, params: Any, x: Array) -> Array:
-        """No action."""
-        return jnp.zeros(1)
-
-    def variance(self, params: Any, x: Array) -> Array:
-        """Of the action."""
-        return jnp.full(1, 0.25)
-
-    def value(self, params: Any, x: Array, u: Array) -> Array:
-        """A constant."""
-        return jnp.full((), 250.0)
-
-
-@dataclass(frozen=True)
-class Fast:
-    """The rewards of Speed(0.1), without an end."""
-
-    def outcome(self, params: Any, x: Array, u: Array, after: Array) -> tuple[Array, float]:
-        """r, and minus infinity."""
-        return after[1] - 0.1 * u[0] ** 2, -jnp.inf
 
 
 @pytest.mark.parametrize(
@@ -72,7 +26,7 @@ class Fast:
 )
 def test_a_decision_is_that_of_numpy(staged: bool, execute: str) -> None:
     """A sum over time weighs each decision by what follows it, another objective all by J."""
-    objective = PredictedReturn(Fast()) if staged else Speed(0.1)
+    objective = PredictedReturn(Fast()) if staged else speed(0.1)
     given: dict[str, Any] = {"log_density": staged, "normalise": not staged, "execute": execute}
     parts = Cart(), objective, NoiseProposal(std=0.5)
     controller = SamplingController(*parts, None, T, K, temperature=0.08, rest=0.7, **given)
@@ -103,48 +57,12 @@ def test_a_decision_is_that_of_numpy(staged: bool, execute: str) -> None:
     np.testing.assert_allclose(found, [1 / (w[:, 0] ** 2).sum(), w[:, 0] @ S[:, 0]], rtol=1e-4)
 
 
-@dataclass(frozen=True)
-class Breaking(Cart):
-    """The mass on a line, of which nothing is known beyond u = 0.2."""
-
-    def step(self, params: Any, x: Array, u: Array) -> Array:
-        """The next state [2]."""
-        return jnp.where(u[0] > 0.2, jnp.nan, super().step(params, x, u))
-
-
-@pytest.mark.parametrize("execute", ["mean", "sample", "best"])
-def test_a_candidate_that_breaks_the_model_has_no_weight(execute: Any) -> None:
-    """As in the simulator, where one candidate is unstable: of Grid's, u = 0 alone is finite."""
-    parts = Breaking(), PredictedReturn(Fast()), Grid()
-    controller = SamplingController(*parts, horizon=T, samples=K, execute=execute)
-    given = Params(), controller.init(SPEC), X, jax.random.key(0)
-    u, state, metrics = jax.jit(controller.act)(*given)
-    assert not state.plan.any()
-    assert float(u[0]) == 0
-    assert float(metrics["planner/planned_return"]) == pytest.approx(T * float(X[1]))
-
-
-@pytest.mark.parametrize("execute", ["mean", "sample", "best", None])
-def test_a_decision_without_a_plan_does_not_spoil_the_next(execute: Any) -> None:
-    """As after one observation of a sensor that failed: its own action is NaN; None: `refits`."""
-    if refits := execute is None:
-        planner: Any = RefitsController(Cart(), Speed(), horizon=T)
-    else:
-        parts = Cart(), Speed(), NoiseProposal()
-        planner = SamplingController(*parts, horizon=T, rest=0.2, execute=execute)
-    act = jax.jit(planner.act)
-    u, state, _ = act(Params(), planner.init(SPEC), jnp.nan * X, jax.random.key(0))
-    assert np.isnan(u).all()
-    assert (np.asarray(state.plan) == np.float32(0.0 if refits else 0.2)).all()
-    assert np.isfinite(act(Params(), state, X, jax.random.key(1))[0]).all()
-
-
 @pytest.mark.parametrize("ends", [False, True])
 def test_the_candidate_that_weighs_most_is_chosen(ends: bool) -> None:
     """By the returns of a reward network, whether or not episodes end."""
     reward = RewardNetwork(hidden=(8,), ends=ends)
-    objective = PredictedReturn(reward, discount=0.9, critic=Closing(), policy=Closing())
-    params = Params(reward=reward.init(jax.random.key(0), SPEC))
+    objective = PredictedReturn(reward, discount=0.9, critic=Acting(), policy=Acting())
+    params = Params(reward=begun(reward, SPEC))
     paths = Path(np.zeros((K, T + 1, 2), np.float32), np.zeros((K, T, 1), np.float32))
     for k in range(K):
         paths.x[k, 0], paths.u[k] = X, k / K
@@ -162,11 +80,11 @@ def test_the_candidate_that_weighs_most_is_chosen(ends: bool) -> None:
 def test_agreement_is_measured_now_and_then() -> None:
     """At multiples of `agreement_every` decisions, and in evaluations; the plan is the same."""
     reward = RewardNetwork(hidden=(8,))
-    params = Params(reward=reward.init(jax.random.key(0), SPEC))
+    params = Params(reward=begun(reward, SPEC))
 
     @partial(jax.jit, static_argnums=0)
     def decided(every: int, decisions: int | None) -> tuple[Array, Array]:
-        parts = Cart(), PredictedReturn(reward), Grid(), Closing()
+        parts = Cart(), PredictedReturn(reward), Grid(), Acting()
         controller = SamplingController(*parts, horizon=T, samples=K, agreement_every=every)
         known = params._replace(decisions=decisions)
         u, _, metrics = controller.act(known, controller.init(SPEC), X, jax.random.key(1))
@@ -180,15 +98,6 @@ def test_agreement_is_measured_now_and_then() -> None:
     assert act(10, 20) == pytest.approx(always, rel=1e-5)
     assert act(10, None) == pytest.approx(always, rel=1e-5)
     assert act(10, 21) == pytest.approx((always[0], np.nan), rel=1e-5, nan_ok=True)
-
-
-def test_candidates_without_a_density_have_no_density_in_the_weight() -> None:
-    """Those of two distributions cannot be compared."""
-    mixture = MixtureProposal(Grid(), Grid())
-    objective = PredictedReturn(RewardNetwork())
-    SamplingController(Cart(), objective, mixture)
-    with pytest.raises(ValueError, match="log_density=true: needs candidates with a density"):
-        SamplingController(Cart(), objective, mixture, log_density=True)
 
 
 @pytest.mark.parametrize(("execute", "then"), [("mean", "mean"), ("sample", "mean"), ("best",) * 2])

@@ -134,13 +134,6 @@ def test_insertion_into_a_single_decision() -> None:
     assert float(got) == pytest.approx(float(linear(other) - linear(one)), rel=1e-12)
 
 
-def test_mode_insertion_gradient_of_the_policys_own_action_is_zero() -> None:
-    """Both actions are equal."""
-    path = roll(bent, feedback, X, jnp.zeros((T, 1)))
-    result = gradients(bent, feedback, staged, path)
-    assert float(insertion_gradient(bent, staged, result, path.u[0])) == 0
-
-
 def test_bound_clips_the_costate() -> None:
     """With a bound, rho is clipped, and g follows from the clipped rho."""
     path = roll(bent, feedback, X, jnp.zeros((T, 1)))

@@ -35,31 +35,20 @@ def test_points_of_a_lattice_are_uniform_each_and_even_together() -> None:
     assert 2 <= counts.min() <= counts.max() <= 6  # of 4 each; independent points miss cells
 
 
-def test_distance_outside_is_squared_and_averaged() -> None:
-    """0 inside, (1, 2) and (-2, 0) beyond sides of lengths 2 and 4."""
-    s = jnp.array([[0.5, 1.0], [2.0, 6.0], [-3.0, 0.0]])
-    assert float(BOX.outside(s)) == pytest.approx((0 + 0.25 + 0.25 + 1) / 3)
-
-
 @pytest.mark.parametrize(
     ("fields", "words"),
     [
         ({"low": (-1.0, -1.0)}, "must have one length"),
-        ({"coordinates": (), "low": (), "high": ()}, "must have one length"),
         ({"coordinates": (3, 3), "low": (0, 0), "high": (1, 1)}, r"=\[3, 3\]: must differ"),
-        ({"low": (float("nan"),)}, r"low=\[nan\]: must hold finite numbers"),
         ({"low": (1.0,)}, r"low=\[1.0\]: must lie below high=\[1.0\]"),
     ],
 )
 def test_bad_boxes_are_refused(fields, words) -> None:
-    """The error names the field."""
     with pytest.raises(ValueError, match=words):
-        Box(**fields)
+        Box(**{"coordinates": (0,), "low": (0.0,), "high": (1.0,)} | fields)
 
 
-def test_a_coordinate_that_a_state_does_not_have_is_refused() -> None:
-    box = Box(coordinates=(0, 9), low=(0.0, 0.0), high=(1.0, 1.0))
-    with pytest.raises(
-        ValueError, match=r"coordinates=\[0, 9\]: must be entries of a state with 4"
-    ):
-        box.of(jnp.zeros(4))
+def test_distance_outside_is_squared_and_averaged() -> None:
+    """0 inside, (1, 2) and (-2, 0) beyond sides of lengths 2 and 4."""
+    s = jnp.array([[0.5, 1.0], [2.0, 6.0], [-3.0, 0.0]])
+    assert float(BOX.outside(s)) == pytest.approx((0 + 0.25 + 0.25 + 1) / 3)

@@ -172,63 +172,6 @@ def test_an_unstable_path_does_not_overflow() -> None:
     assert np.isfinite(slope).all()
 
 
-LENGTH, SETS, NOISE = 30, 4000, 0.01
-LINEAR = np.array([0.95, 0.5])  # x' = a x + b u
-
-
-def simulated(theta: np.ndarray, u: np.ndarray, noise: np.ndarray) -> np.ndarray:
-    """x [S, T+1] from 1 for theta [S, 2] and process noise [S, T]."""
-    x = [np.ones(len(noise))]
-    for t in range(len(u)):
-        x.append(theta[:, 0] * x[-1] + theta[:, 1] * u[t] + noise[:, t])
-    return np.stack(x, 1)
-
-
-def one_step_estimates(u: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """Least squares [S, 2] of x' on (x, u), every state measured, noise in the process."""
-    x = simulated(np.tile(LINEAR, (SETS, 1)), u, NOISE * rng.normal(size=(SETS, LENGTH)))
-    z = np.stack([x[:, :-1], np.broadcast_to(u, x[:, 1:].shape)], -1)
-    gram, right = z.swapaxes(1, 2) @ z, np.einsum("stk,st->sk", z, x[:, 1:])
-    return np.linalg.solve(gram, right[..., None])[..., 0]
-
-
-def output_error_estimates(u: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """Gauss-Newton [S, 2] on the whole path from a known x_0, noise in the measurements."""
-    theta = np.tile(LINEAR, (SETS, 1))
-    none = np.zeros((SETS, LENGTH))
-    y = simulated(theta, u, none)[:, 1:] + NOISE * rng.normal(size=(SETS, LENGTH))
-    for _ in range(5):
-        slopes = [
-            (simulated(theta + d, u, none) - simulated(theta - d, u, none))[:, 1:] / 2e-6
-            for d in 1e-6 * np.eye(2)
-        ]
-        z, rest = np.stack(slopes, -1), y - simulated(theta, u, none)[:, 1:]
-        gram, right = z.swapaxes(1, 2) @ z, np.einsum("stk,st->sk", z, rest)
-        theta = theta + np.linalg.solve(gram, right[..., None])[..., 0]
-    return theta
-
-
-def test_variance_of_estimates_is_the_inverse_of_the_information() -> None:
-    """Output error goes with path, one-step errors with step; the crossed pairs are far off.
-
-    The noise is small: the information is that of the path without noise.
-    """
-    rng = np.random.default_rng(3)
-    u = rng.uniform(-1, 1, LENGTH)
-    x = simulated(LINEAR[None], u, np.zeros((1, LENGTH)))[0]
-    path = Path(jnp.asarray(x)[:, None], jnp.asarray(u)[:, None])
-    predicted = {}
-    for kind in fisher.KINDS:
-        F = along(lambda theta, x, u: theta[0] * x + theta[1] * u, jnp.asarray(LINEAR), path, kind)
-        rows = np.asarray(F)[:, 0] / NOISE
-        predicted[kind] = np.diag(np.linalg.inv(rows.T @ rows))
-    one, whole = one_step_estimates(u, rng).var(0), output_error_estimates(u, rng).var(0)
-    np.testing.assert_allclose(whole, predicted["path"], rtol=0.1)
-    np.testing.assert_allclose(one, predicted["step"], rtol=0.1)
-    assert predicted["step"][0] > 3 * whole[0]
-    assert one[0] > 3 * predicted["path"][0]
-
-
 @pytest.mark.parametrize("kind", fisher.KINDS)
 def test_a_recorded_path_is_numpy_in_float64(kind) -> None:
     """As it is, in float32 too, where such a type would be a warning."""
@@ -243,25 +186,3 @@ def test_a_recorded_path_is_numpy_in_float64(kind) -> None:
     assert F.dtype == d.dtype == jnp.float32
     np.testing.assert_allclose(F[0], np.stack([x[0], u[0]], 1), rtol=1e-6)
     np.testing.assert_allclose(F.sum(2), d, rtol=1e-5)
-
-
-def test_names_that_are_none_are_refused() -> None:
-    F = jnp.ones((5, 2, 2))
-    with pytest.raises(ValueError, match="criterion d: choose one of A_step, A, D, T, full"):
-        fisher.criterion("d", F, jnp.ones(2), jnp.ones(2))
-    path = Path(jnp.zeros((3, 1)), jnp.zeros((2, 1)))
-    with pytest.raises(ValueError, match="kind steps: choose one of step, path"):
-        fisher.along(lambda theta, x, u: theta * x, jnp.ones(1), path, "steps")
-
-
-@pytest.mark.parametrize(
-    ("sigma", "prior", "words"),
-    [
-        (0.1, jnp.ones(3), r"sigma has shape \(\), must have \(2,\); F .* = \(5, 2, 3\)"),
-        (jnp.ones(2), jnp.eye(3), r"prior has shape \(3, 3\), must have \(3,\)"),
-    ],
-)
-def test_deviations_and_prior_of_another_shape_are_refused(sigma, prior, words) -> None:
-    """A matrix of the prior would be added to a diagonal."""
-    with pytest.raises(ValueError, match=words):
-        fisher.criterion("D", jnp.ones((5, 2, 3)), sigma, prior)

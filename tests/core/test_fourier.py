@@ -5,7 +5,6 @@ import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.core import fourier
-from hybrid_rl.core.domain import Box
 
 LOW, HIGH = (-1.0, 0.0), (1.0, 0.5)
 
@@ -29,26 +28,3 @@ def test_slopes_of_the_features_vanish_at_the_walls() -> None:
     """So that nothing leads out of the box."""
     slope = jax.jacfwd(lambda x: fourier.features(x[None], LOW, HIGH, 4)[0])
     np.testing.assert_allclose(slope(jnp.array(HIGH)), 0, atol=1e-4)
-
-
-def test_a_lattice_estimates_the_coefficients_of_a_ring_better_than_independent_points() -> None:
-    """Against a quadrature of 400 x 400 cells; E is averaged over ten draws."""
-    ends = (0.0, 0.0), (1.0, 1.0)
-
-    def log_ring(s):
-        return -0.5 * ((jnp.hypot(s[:, 0] - 0.5, s[:, 1] - 0.4) - 0.25) / 0.02) ** 2
-
-    def coefficients(s):
-        return jax.nn.softmax(log_ring(s)) @ fourier.features(s, *ends, 8)
-
-    side = (np.arange(400) + 0.5) / 400
-    exact = jax.jit(coefficients)(jnp.asarray(np.stack(np.meshgrid(side, side), -1).reshape(-1, 2)))
-    errors = {}
-    for lattice in (False, True):
-        box, weights = Box((0, 1), *ends, lattice), fourier.decay(2, 8)
-
-        def error(key, box=box, weights=weights):
-            return fourier.metric(coefficients(box.sample(1000, key)), exact, weights)
-
-        errors[lattice] = np.mean(jax.jit(jax.vmap(error))(jax.random.split(jax.random.key(0), 10)))
-    assert errors[True] < errors[False] / 10

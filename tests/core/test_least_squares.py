@@ -43,15 +43,6 @@ def test_solution_is_weighted_least_squares(forgetting: float, batch: int) -> No
         assert float(least_squares.leverage(spread, s)) == pytest.approx(quadratic, rel=1e-12)
 
 
-def test_many_rows_at_once_are_least_squares_of_numpy() -> None:
-    """With a prior that hardly counts."""
-    with jax.enable_x64(True):
-        factor = least_squares.begin(jnp.zeros((A, R)), 1e-14)
-        factor = least_squares.fold(factor, jnp.asarray(S), jnp.asarray(Y))
-        expected = np.linalg.lstsq(S, Y, rcond=None)[0].T
-        np.testing.assert_allclose(least_squares.solve(factor)[0], expected, atol=1e-10)
-
-
 def test_directions_without_data_keep_the_prior() -> None:
     """After 2,000 decisions that excite one direction, with forgetting."""
     mean = jnp.array([[0.3, -0.8]])
@@ -65,15 +56,6 @@ def test_directions_without_data_keep_the_prior() -> None:
 
     K = least_squares.solve(follow(factor))[0][0]
     np.testing.assert_allclose(K, [(5 * 20 + 0.3) / 21, -0.8], rtol=1e-4)
-
-
-def test_rows_of_another_shape_are_refused() -> None:
-    """Data in columns, and a transposed K, with which the shapes add up to the same."""
-    s, y = jnp.ones((9, R)), jnp.ones((9, A))
-    K = jnp.zeros((A, R))
-    for first, inputs, outputs in ((K.T, s, y), (K, s.T, y.T), (K, s, y[:-1]), (K, s[0], y[0])):
-        with pytest.raises(ValueError, match=r"must be \[B, r\] and \[B, a\], with r, a = "):
-            least_squares.add(least_squares.begin(first, 1.0), inputs, outputs, first)
 
 
 def test_float32_is_far_more_precise_than_with_sums() -> None:

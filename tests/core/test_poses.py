@@ -15,6 +15,11 @@ KINDS = {"turn": (1.0, 0.0, 0.0), "walk": (0.0, 1.0, 0.0), "leap": (0.0, 0.0, 1.
 CONTACT = jnp.array([0.4, 0.9])
 
 
+@jax.jit
+def move(theta, known, chances, key):
+    return poses.move(FRAME, theta, CONTACT, known, chances, key)
+
+
 def test_positions_go_to_the_map_and_back() -> None:
     """As complex numbers: turning is a product."""
     theta, s = np.array([0.3, -0.2, 2.0]), np.array([0.7, 0.1])
@@ -24,23 +29,25 @@ def test_positions_go_to_the_map_and_back() -> None:
     np.testing.assert_allclose(poses.from_map(jnp.asarray(theta), got, FRAME.middle), s, rtol=1e-5)
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_moves_keep_a_uniform_distribution(kind) -> None:
-    """4,000 poses from the prior, ten moves each: every tenth of each entry stays a tenth."""
+@jax.jit
+@partial(jax.vmap, in_axes=(0, None))
+def chain(key, chances):
+    """A pose after ten moves, and how many were accepted."""
 
     def one(theta, key):
         proposing, accepting = jax.random.split(key)
-        new, ratio = poses.move(FRAME, theta, CONTACT, jnp.array(True), KINDS[kind], proposing)
+        new, ratio = poses.move(FRAME, theta, CONTACT, jnp.array(True), chances, proposing)
         good = (jnp.log(jax.random.uniform(accepting)) < ratio) & poses.inside(FRAME, new)
         return jnp.where(good, new, theta), good
 
-    @jax.jit
-    @jax.vmap
-    def chain(key):
-        first, moving = jax.random.split(key)
-        return jax.lax.scan(one, poses.draw(FRAME, first), jax.random.split(moving, 10))
+    first, moving = jax.random.split(key)
+    return jax.lax.scan(one, poses.draw(FRAME, first), jax.random.split(moving, 10))
 
-    theta, good = chain(jax.random.split(jax.random.key(1), 4000))
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_moves_keep_a_uniform_distribution(kind) -> None:
+    """4,000 poses from the prior, ten moves each: every tenth of each entry stays a tenth."""
+    theta, good = chain(jax.random.split(jax.random.key(1), 4000), jnp.array(KINDS[kind]))
     assert good.mean() > 0.01
     unit = (np.asarray(theta) - [0, 0, -np.pi]) / [1, 2, 2 * np.pi]
     for entry in unit.T:
@@ -52,10 +59,9 @@ def test_moves_keep_a_uniform_distribution(kind) -> None:
 def test_a_turn_keeps_the_contact() -> None:
     """The position in the map's frame does not change."""
     theta = jnp.array([0.3, 1.2, 0.5])
-    move = jax.jit(partial(poses.move, FRAME, theta, CONTACT, jnp.array(True), KINDS["turn"]))
     seen = jax.jit(lambda theta: poses.to_map(theta, CONTACT, FRAME.middle))
     for i in range(5):
-        new, ratio = move(jax.random.key(i))
+        new, ratio = move(theta, True, KINDS["turn"], jax.random.key(i))
         np.testing.assert_allclose(seen(new), seen(theta), atol=1e-5)
         assert float(ratio) == 0
         assert float(jnp.abs(new - theta).max()) > 1e-3
@@ -67,9 +73,7 @@ def test_leaps_have_the_density_that_is_reported() -> None:
     @jax.jit
     @jax.vmap
     def leap(key):
-        chances = KINDS["leap"]
-        theta = jnp.array([0.5, 0.5, 0.0])
-        return poses.move(FRAME, theta, CONTACT, jnp.array(True), chances, key)[0]
+        return move(jnp.array([0.5, 0.5, 0.0]), True, KINDS["leap"], key)[0]
 
     drawn = np.asarray(leap(jax.random.split(jax.random.key(2), 40_000)))
     radius = np.array([0.02, 0.02, 0.2])
@@ -88,10 +92,9 @@ def test_leaps_have_the_density_that_is_reported() -> None:
 def test_without_a_contact_a_move_is_a_walk() -> None:
     """Whatever the chances."""
     theta = jnp.array([0.3, 1.2, 0.5])
-    args = (FRAME, theta, CONTACT, jnp.array(False))
     for i in range(3):
-        walk = poses.move(*args, KINDS["walk"], jax.random.key(i))
+        walk = move(theta, False, KINDS["walk"], jax.random.key(i))
         for chances in (KINDS["leap"], poses.CHANCES):
-            got = poses.move(*args, chances, jax.random.key(i))
+            got = move(theta, False, chances, jax.random.key(i))
             np.testing.assert_array_equal(got[0], walk[0])
             assert float(got[1]) == 0

@@ -8,14 +8,12 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from jax import Array
-from scipy.linalg import expm, logm
 
 from hybrid_rl.core import analytic, riccati
-from hybrid_rl.envs.analytic.cart_double_pendulum import FORCE, CartDoublePendulum
+from hybrid_rl.envs.analytic.cart_double_pendulum import CartDoublePendulum
 from hybrid_rl.envs.analytic.no_dynamics import NoDynamics
 from hybrid_rl.envs.analytic.point_mass import PointMass
 from hybrid_rl.envs.analytic.state import Euclidean, fully_observed
-from hybrid_rl.envs.cartpole import Cartpole
 from hybrid_rl.policies.regulator import Regulator
 from hybrid_rl.types import EnvState, Spec
 
@@ -68,62 +66,6 @@ def test_cart_double_pendulum_has_the_poles_of_its_source() -> None:
     np.testing.assert_allclose(poles, [-10.39, -4.10, 0, 0, 4.10, 10.39], atol=0.01)
 
 
-def test_gains_tend_to_those_of_continuous_time() -> None:
-    """K [N per unit] for Q = diag(5 50 50 20 700 700), R = 1, with very short decisions.
-
-    With decisions of 0.01 s the gains differ by 25%, since an action is held constant.
-    """
-    A, B = analytic.at_equilibrium(CartDoublePendulum())
-    held = np.eye(7)
-    held[:6] = np.hstack([A, B / FORCE])
-    quick = expm(logm(held).real / 1000)
-    K = riccati.regulator(quick[:6, :6], quick[:6, 6:], np.diag(WEIGHTS), np.eye(1)).gain[0]
-    continuous = [2.2361, -492.63, 570.92, 8.2457, -18.982, 88.293]
-    np.testing.assert_allclose(K, continuous, rtol=1e-3)
-
-
-def test_gains_equal_those_of_value_iteration() -> None:
-    """P <- Q + A' P (A - B K), repeated from Q; the closed loop is stable."""
-    policy = Regulator(CartDoublePendulum(), WEIGHTS, (FORCE**2,))
-    A, B = analytic.at_equilibrium(policy.world)
-    Q, R = np.diag(WEIGHTS), np.array([[FORCE**2]])
-    P = Q
-    for _ in range(3000):
-        K = np.linalg.solve(R + B.T @ P @ B, B.T @ P @ A)
-        P = Q + A.T @ P @ (A - B @ K)
-    np.testing.assert_allclose(policy.solve()[0], K, rtol=1e-9)
-    assert np.abs(np.linalg.eigvals(A - B @ K)).max() < 1
-
-
-def test_the_point_mass_is_two_double_integrators() -> None:
-    """Its Jacobians, by the matrix exponential."""
-    A, B = analytic.at_equilibrium(PointMass())
-    block = expm(0.1 * np.array([[0, 1.0, 0], [0, 0, 2.0], [0, 0, 0]]))
-    np.testing.assert_allclose(A[np.ix_([0, 2], [0, 2])], block[:2, :2], atol=1e-12)
-    np.testing.assert_allclose(B[[0, 2], 0], block[:2, 2], atol=1e-12)
-
-
-def test_an_environment_that_is_not_analytic_is_refused() -> None:
-    """Here the cart and pole of MuJoCo."""
-    with pytest.raises(ValueError, match=r"Regulator: world=Cartpole: needs an analytic env"):
-        Regulator(Cartpole("native"))
-
-
-@pytest.mark.parametrize("weights", [(1.0, 2.0), (0.0,)])
-def test_bad_weights_are_refused(weights) -> None:
-    """Too many, or not positive."""
-    with pytest.raises(ValueError, match="state_weights"):
-        Regulator(CartDoublePendulum(), weights).solve()
-
-
-def test_the_regulator_is_solved_inside_a_compiled_program() -> None:
-    """The solution is a constant of that program."""
-    policy = Regulator(PointMass(), (2.0,))
-    x = np.array([0.9, 0.1, 0.3, 0.0])
-    inside = jax.jit(lambda x: policy.mean((), x))(x)
-    np.testing.assert_allclose(inside, policy.mean((), x), rtol=1e-6)
-
-
 def test_free_coordinates_minimise_the_lyapunov_function() -> None:
     """V without the cart's position is the minimum of V over a grid of positions."""
     counted = Regulator(CartDoublePendulum(), (5.0, 50.0, 50.0, 20.0, 700.0, 700.0), (1600.0,))
@@ -152,24 +94,6 @@ def test_doubling_is_the_recursion(steps: int) -> None:
     with jax.enable_x64(True):
         doubled = riccati.finite_horizon(*map(jnp.asarray, SYSTEM), steps)
     np.testing.assert_allclose(doubled, P, rtol=1e-8)
-
-
-@pytest.mark.parametrize(
-    ("fault", "line"),
-    [
-        ({"R": 0.1}, r"R has shape \(\), must have \(1, 1\); A is \[n, n\], B \[n, m\], "),
-        ({"P": np.eye(3)}, r" has shape \(3, 3\), must have \(2, 2\); A is"),
-        ({"B": np.ones(2)}, r"B has shape \(2,\), must have \(2, 2\); A is"),
-        ({"A": np.eye(2, 3)}, r"A has shape \(2, 3\), must have \(2, 2\); A is"),
-    ],
-)
-def test_matrices_of_other_shapes_are_refused(fault: dict[str, Any], line: str) -> None:
-    given: dict[str, Any] = {"A": np.eye(2), "B": np.eye(2, 1), "P": np.eye(2), "R": np.eye(1)}
-    A, B, P, R = (given | fault).values()
-    with pytest.raises(ValueError, match=line):
-        riccati.finite_horizon(A, B, P, R, 3)
-    with pytest.raises(ValueError, match=line):
-        riccati.gain(A, B, P, R)
 
 
 def test_a_long_horizon_is_the_algebraic_equation() -> None:

@@ -82,8 +82,16 @@ def test_the_weighted_mean_converges_to_the_path_integral() -> None:
 
 def test_effective_samples_range_from_one_to_the_number_of_samples() -> None:
     """K for equal weights, 1 if only one is not zero."""
-    assert sampling.effective_samples(jnp.full((K, 1), 1 / K))[0] == pytest.approx(K)
-    assert sampling.effective_samples(jnp.eye(K)[:, :1])[0] == pytest.approx(1)
+    for weights, number in ((jnp.full((K, 1), 1 / K), K), (jnp.eye(K)[:, :1], 1)):
+        assert sampling.effective_samples(weights)[0] == pytest.approx(number)
+
+
+@pytest.mark.parametrize("module", [sampling, adjoint])
+def test_plans_refuse_a_step_that_returns_no_state_like_x(module: Any) -> None:
+    given = (jax.random.key(0),) if module is sampling else ()
+    for bad in (lambda x, u: jnp.zeros(3), lambda x, u: (x, u)):
+        with pytest.raises(ValueError, match=r"where x is \[2\]"):
+            module.plan(bad, lambda x, u, after: 0.0, jnp.zeros(2), jnp.zeros((3, 1)), *given)
 
 
 def test_shift_drops_the_first_action() -> None:
@@ -100,13 +108,9 @@ def test_plans_refuse_a_step_that_returns_no_state_like_x() -> None:
 
     for module in (sampling, adjoint):
         for x, step, words in (
-            (
-                jnp.zeros(2),
-                lambda x, u: jnp.zeros(3),
-                r"returns \[3\] of float32, where x is \[2\]",
-            ),
-            (jnp.zeros(2), lambda x, u: (x, u), "returns tuple, where x is"),
-            (jnp.zeros(2, int), lambda x, u: x + u[0], "of float32, where x is .* of int32"),
+            (jnp.zeros(2), lambda x, u: jnp.zeros(3), r"returns float32\[3\], where x is float"),
+            (jnp.zeros(2), lambda x, u: (x, u), "returns a tuple of 2, where x is"),
+            (jnp.zeros(2, int), lambda x, u: x + u[0], "float32.*, where x is int32"),
         ):
             with pytest.raises(ValueError, match=words):
                 plan(module, x, step)

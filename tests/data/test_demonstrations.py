@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 import small
 
-from hybrid_rl.data.demonstrations import Demonstrations, save
+from hybrid_rl.data.demonstrations import COLUMNS, Demonstrations, save
 from hybrid_rl.data.replay import Replay, unpack
 from hybrid_rl.envs.analytic.pendulum import Pendulum
-from hybrid_rl.errors import UsageError
 from hybrid_rl.settings import build as config
 from hybrid_rl.types import Transition
 
@@ -45,19 +44,14 @@ def loaded(file: Path, /, **fields: object) -> Transition:
 
 
 def test_saved_decisions_are_loaded(file: Path) -> None:
-    """In float32, and the episode that ended with neither flag is truncated."""
-    got, put = loaded(file), decisions()
+    """In float32, and the episode that ended with neither flag is truncated; or the first few."""
+    put = decisions()
     put.truncated[LAST[2]] = 1
-    for a, b in zip(got, put, strict=True):
-        np.testing.assert_array_equal(a, b.astype(np.float32))
-
-
-@pytest.mark.parametrize("episodes", [1, 2, 3])
-def test_the_first_episodes_are_loaded(file: Path, episodes: int) -> None:
-    """All of their decisions and no others."""
-    got = loaded(file, episodes=episodes)
-    count = sum(LENGTHS[:episodes])
-    np.testing.assert_array_equal(got.obs, decisions().obs[:count].astype(np.float32))
+    for episodes in (None, 1, 2, 3):
+        got = loaded(file, episodes=episodes)
+        count = sum(LENGTHS[:episodes])
+        for a, b in zip(got, put, strict=True):
+            np.testing.assert_array_equal(a, b[:count].astype(np.float32))
 
 
 @pytest.mark.parametrize(
@@ -65,59 +59,41 @@ def test_the_first_episodes_are_loaded(file: Path, episodes: int) -> None:
     [
         ({"task": "cartpole"}, "is of task pendulum; this run has task cartpole"),
         ({"episodes": 4}, "num_demonstrations=4: .* has 3"),
-        ({"episodes": 0}, "num_demonstrations=0: must be 1 or more"),
         ({"episode": {"action_repeat": 4}}, "is of dt 0.05; this run has dt 0.2"),
-        ({"file": "nowhere.npz"}, "nowhere.npz: no such file; `python -m hybrid_rl.demonstrate`"),
+        ({"file": "nowhere.npz"}, "nowhere.npz: no such file"),
     ],
 )
 def test_a_file_for_another_use_is_refused(file: Path, fields: dict, words: str) -> None:
-    """Another task, rate or number."""
     with pytest.raises(ValueError, match=words):
         loaded(file, **fields)
 
 
-def _changed(**arrays: object) -> dict:
-    """The arrays of a valid file, some of them replaced; None: omitted."""
-    whole = {**decisions()._asdict(), "episode": EPISODE, "task": "pendulum", "sizes": (3, 1)}
-    whole |= {"dt": 0.05} | arrays
-    return {name: value for name, value in whole.items() if value is not None}
-
-
-def _with(array: np.ndarray, at: int, value: float) -> np.ndarray:
+def put_in(array: np.ndarray, at: int, value: float) -> np.ndarray:
     array = np.array(array, float)
     array[at] = value
     return array
 
 
+EMPTY = {**dict.fromkeys((*COLUMNS, "episode"), ()), "obs": (3,), "action": (1,), "next_obs": (3,)}
+
+
 @pytest.mark.parametrize(
     ("arrays", "words"),
     [
-        ({"reward": None}, "lacks reward"),
         ({"obs": np.zeros((N, 4))}, r"obs is \(12, 4\); it must be \(12, 3\)"),
         ({"episode": EPISODE[:-1]}, r"episode is \(11,\); it must be \(12,\)"),
-        ({"reward": decisions().reward[:-1]}, r"reward is \(11,\); it must be \(12,\)"),
         ({"episode": EPISODE[::-1]}, "episodes must follow one another"),
-        ({"obs": _with(decisions().obs, 7, np.nan)}, r"obs is not finite at \[7, 0\]"),
-        ({"reward": _with(decisions().reward, 2, np.inf)}, r"reward is not finite at \[2\]"),
-        ({"action": _with(decisions().action, 5, 1.5)}, r"action must lie in \[-1, 1\]"),
-        ({"truncated": _with(np.zeros(N), 1, 1)}, "continues after its end, in row 1"),
-        ({"reward": np.full(N, "a")}, "reward must hold numbers"),
-        ({"obs": np.array([object()])}, "is damaged, cut short, or no .npz file"),
-        (
-            {name: array[:0] for name, array in _changed().items() if np.ndim(array)}
-            | {"sizes": (3, 1)},
-            "there is no decision",
-        ),
-        (
-            {"sizes": (4, 1), "obs": np.zeros((N, 4)), "next_obs": np.zeros((N, 4))},
-            "is of obs 4; this run has obs 3",
-        ),
+        ({"obs": put_in(decisions().obs, 7, np.nan)}, r"obs is not finite at \[7, 0\]"),
+        ({"obs": put_in(decisions().obs, 2, 1e300)}, r"obs is not finite at \[2, 0\]"),
+        ({"action": put_in(decisions().action, 5, 1.5)}, r"action must lie in \[-1, 1\]"),
+        ({"truncated": put_in(np.zeros(N), 1, 1)}, "continues after its end, in row 1"),
+        ({name: np.zeros((0, *shape)) for name, shape in EMPTY.items()}, "there is no decision"),
     ],
     ids=lambda given: "" if isinstance(given, dict) else given[:20],
 )
 def test_an_inconsistent_file_is_refused(tmp_path: Path, arrays: dict, words: str) -> None:
-    """The error names the fault."""
-    np.savez(tmp_path / "bad.npz", **_changed(**arrays))
+    whole = {**decisions()._asdict(), "episode": EPISODE, "task": "pendulum", "sizes": (3, 1)}
+    np.savez(tmp_path / "bad.npz", **whole | {"dt": 0.05} | arrays)
     with pytest.raises(ValueError, match=words):
         loaded(tmp_path / "bad.npz")
 
@@ -155,18 +131,6 @@ def test_demonstrations_earn_what_the_run_pays(tmp_path: Path) -> None:
     broken = np.abs(kept.action[:, 0]) > 0.5
     assert 0 < broken.sum() < len(broken)
     np.testing.assert_allclose(kept.reward, earned - 3 * broken, rtol=1e-5)
-
-
-def test_demonstrations_whose_pay_is_unknown_are_refused(tmp_path: Path) -> None:
-    """A decision of several steps lacks the states in between."""
-    given = ["task=pendulum", "constraint=torque", "replay.demonstrations=${recorded}"]
-    composed = small.load("sac", *given, "episode.action_repeat=2")
-    composed = small.with_demonstrations(composed, tmp_path)
-    line = r"^replay\.demonstrations: what reward and constraint make of them is unknown with"
-    with pytest.raises(UsageError, match=line):
-        config.build(composed)
-    composed.constraint = None
-    config.build(composed)
 
 
 def test_a_memory_smaller_than_the_demonstrations_is_refused(file: Path) -> None:

@@ -1,6 +1,5 @@
 """The file of a trained policy: parameters come back bit for bit, and bad files are refused."""
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +7,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from tiny import call, only_line, run
+from tiny import call, run
 
 from hybrid_rl import demonstrate
 from hybrid_rl.cli import command
@@ -16,7 +15,6 @@ from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.data.trained import SavedPolicy, save
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.analytic.point_mass import PointMass
-from hybrid_rl.policies.deterministic import Deterministic
 from hybrid_rl.policies.tanh_gaussian import StartedGaussian, TanhGaussian
 from hybrid_rl.run.saved import load, read
 from hybrid_rl.settings import build as config
@@ -90,29 +88,17 @@ def test_the_policy_is_the_one_that_the_file_describes(file: Path) -> None:
         opened(file, policy=None)
 
 
-def test_candidates_come_from_a_policy_of_the_package() -> None:
-    """Which has no layers in common with the default."""
-    line = ["task=panda_stack", "algo=mppi", "env.observation=stage", "proposal=policy"]
-    run = config.build(config.load([*line, "policy=trained"]))
-    planner: Any = run.controllers["full"]
-    assert isinstance(planner.proposal.policy.policy, Deterministic)
-
-
 @pytest.mark.parametrize(
     ("fields", "words"),
     [
         ({"task": "cartpole"}, "is of task pendulum; this run has task cartpole"),
         ({"world": PointMass()}, "is of obs 3; this run has obs 4"),
         ({"episode": {"action_repeat": 4}}, "is of dt 0.05; this run has dt 0.2"),
-        ({"file": "nowhere.npz"}, "no such file; `python -m hybrid_rl.demonstrate run=DIR policy"),
-        (
-            {"policy": TanhGaussian((4, 4), "sin", normalise=True)},
-            r"bias is \(8,\); it must be \(4,",
-        ),
+        ({"policy": TanhGaussian((4, 4), "sin", normalise=True)}, r"bias is \(8,\); .* \(4,"),
         ({"policy": TanhGaussian((8, 4), "sin")}, r"policy/state.* is .*; it must be absent"),
         (
             {"policy": TanhGaussian((8, 4, 2), "sin", normalise=True)},
-            r"policy/trunk/params/.* is absent; it must be \(",
+            "params/.* is absent; it must",
         ),
     ],
 )
@@ -120,25 +106,6 @@ def test_a_file_for_another_use_is_refused(file: Path, fields: dict, words: str)
     """Another task, rate or policy."""
     with pytest.raises(ValueError, match=words):
         opened(file, **fields)
-
-
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        (lambda a: a | {BIAS: np.full_like(a[BIAS], np.nan)}, f"{BIAS} is not finite"),
-        (lambda a: {k: v for k, v in a.items() if k != "dt"}, "lacks dt"),
-        (lambda a: a | {BIAS: np.full(8, "a")}, f"{BIAS} must hold numbers"),
-        (lambda a: a | {"sizes": np.zeros(3)}, "sizes must be two numbers"),
-    ],
-    ids=lambda given: given[-9:] if isinstance(given, str) else "",
-)
-def test_an_inconsistent_file_is_refused(file: Path, change: Callable, words: str) -> None:
-    """The error names the fault."""
-    with np.load(file) as arrays:
-        whole = dict(arrays)
-    np.savez(file, **change(whole))
-    with pytest.raises(ValueError, match=words):
-        opened(file)
 
 
 def test_parameters_that_are_not_finite_are_not_written(tmp_path: Path) -> None:
@@ -149,9 +116,9 @@ def test_parameters_that_are_not_finite_are_not_written(tmp_path: Path) -> None:
 
 
 def test_the_policy_of_a_run_becomes_the_expert_of_its_task(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The first seed's, whose actions are those of the run; other requests are refused."""
+    """The first seed's, whose actions are those of the run."""
     monkeypatch.chdir(tmp_path)
     run(tmp_path / "run", "algo=sac", "num_seeds=2")
     write = [f"run={tmp_path / 'run'}", "policy=policy.npz", "command=as above"]
@@ -172,11 +139,3 @@ def test_the_policy_of_a_run_becomes_the_expert_of_its_task(
     )
     assert again.episode == given.episode
     np.testing.assert_allclose(again.policy()(x), want, atol=1e-6)
-    capfd.readouterr()
-    for words, wrong in (
-        ("give run=DIR", ["task=pendulum", "policy=policy.npz"]),
-        ("must end in .npz", [write[0], "policy=policy.txt"]),
-        ("a run has its own", [*write, "env.x=1"]),
-    ):
-        assert call(lambda wrong=wrong: command.run(demonstrate.main), *wrong) == 2
-        assert words in only_line(capfd)

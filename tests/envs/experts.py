@@ -5,13 +5,20 @@ from functools import cache
 import jax
 import jax.numpy as jnp
 import numpy as np
-from worlds import step_grid
+import pytest
+from worlds import IMPLEMENTATIONS, jitted, step_grid
 
 from hybrid_rl.envs.experts.push import PushController
 from hybrid_rl.envs.experts.stack import StackController
 from hybrid_rl.types import Params
 
 EXPERTS = {"sawyer_push": PushController(), "panda_stack": StackController(grip="action")}
+
+
+def over_implementations(task):
+    """Ids as of the other tests of the task: MJX only with `--slow`."""
+    ids = [f"{task}-{implementation}" for implementation in IMPLEMENTATIONS]
+    return pytest.mark.parametrize("implementation", IMPLEMENTATIONS, ids=ids)
 
 
 @cache
@@ -21,7 +28,7 @@ def play(env, expert, decisions):
     Stepped by the program that the other tests of `env` compiled.
     """
     keys = jax.random.split(jax.random.key(1), 4).reshape(2, 2)
-    state = jax.jit(jax.vmap(jax.vmap(env.reset)))(keys)
+    state = jax.vmap(jax.vmap(jitted(env, "reset")))(keys)
     memory = jax.tree.map(lambda a: jnp.tile(a, (2, 2, 1)), expert.init(env.spec))
 
     @jax.jit

@@ -40,17 +40,6 @@ def test_brax_wrappers_run():
     np.testing.assert_array_equal(state.obs, first)
 
 
-@pytest.mark.filterwarnings("ignore::DeprecationWarning")  # Brax imports jaxopt
-def test_brax_wrappers_reject_new_style_keys():
-    from brax.envs import training
-
-    from hybrid_rl.envs.adapters.brax import BraxEnv
-
-    env = training.wrap(BraxEnv(Pendulum()), episode_length=6)
-    with pytest.raises(TypeError, match=r"keys of jax\.random\.PRNGKey, not of jax\.random\.key"):
-        env.reset(jax.random.split(jax.random.key(0), 3))
-
-
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
 def test_brax_trainers_run_with_the_lines_of_the_docstring(monkeypatch):
     """And not without them: when Brax supports the current JAX, they can be removed."""

@@ -1,35 +1,21 @@
 """The contact plane against closed forms, MuJoCo C and its own free flight."""
 
-from functools import partial
-
 import jax
 import jax.numpy as jnp
 import mujoco
 import numpy as np
 import pytest
+from worlds import along, jitted, many, shown
 
 from hybrid_rl.envs.analytic.contact_plane import ContactPlane, rounded_box
 from hybrid_rl.envs.analytic.point_mass import PointMass
 
 WORLD = ContactPlane()
-reset = jax.jit(ContactPlane.reset, static_argnums=0)
-distance = jax.jit(ContactPlane.distance, static_argnums=0)
-
-
-@partial(jax.jit, static_argnums=0)
-def follow(env, state, actions):
-    """The states after each of actions [T, 2]."""
-
-    def one(state, u):
-        state = env.step(state, u)
-        return state, state
-
-    return jax.lax.scan(one, state, actions)[1]
 
 
 def at(env, x, pose=None):
     """The state at x [4], with the objects at `pose` [3]."""
-    state = reset(env, jax.random.key(0))
+    state = jitted(env, "reset")(jax.random.key(0))
     pose = state.data.pose if pose is None else jnp.asarray(pose, jnp.float32)
     x = jnp.asarray(x, jnp.float32)
     return state.replace(data=state.data._replace(x=x, pose=pose), obs=x)
@@ -61,8 +47,10 @@ def test_the_pose_moves_all_objects_about_the_middle() -> None:
     for s in rng.uniform(0, 1, (5, 2)):
         c, d = np.cos(0.8), np.sin(0.8)
         moved = np.array([[c, -d], [d, c]]) @ (s - 0.5) + pose[:2]
-        want = distance(WORLD, jnp.asarray(s, jnp.float32))
-        got = distance(WORLD, jnp.asarray(moved, jnp.float32), jnp.asarray(pose, jnp.float32))
+        want = jitted(WORLD, "distance")(jnp.asarray(s, jnp.float32))
+        got = jitted(WORLD, "distance")(
+            jnp.asarray(moved, jnp.float32), jnp.asarray(pose, jnp.float32)
+        )
         assert float(got) == pytest.approx(float(want), abs=1e-6)
 
 
@@ -71,40 +59,12 @@ def test_without_contact_it_is_the_point_mass(drag) -> None:
     """Ten steps of a decision are one of the exact integral, and nothing is felt."""
     env, free = ContactPlane(objects=(), drag=drag), PointMass(1.0, drag)
     actions = np.random.default_rng(0).uniform(-1, 1, (30, 2)).astype(np.float32)
-    states = follow(env, at(env, [0.2, 0.3, 0.5, -0.4]), jnp.asarray(actions))
+    states = along(env, at(env, [0.2, 0.3, 0.5, -0.4]), actions)
     x, dynamics = jnp.array([0.2, 0.3, 0.5, -0.4]), jax.jit(free.dynamics)
     for u, after in zip(actions, states.obs, strict=True):
         x = dynamics(x, jnp.asarray(u))
         np.testing.assert_allclose(after, x, atol=1e-5)
     assert not states.reward.any()
-
-
-def test_drag_of_the_point_mass_against_its_differential_equation() -> None:
-    """Many small Euler steps."""
-    x, u = np.array([0.1, 0.2, 1.0, -0.5]), np.array([0.3, -0.9])
-    after = PointMass(1.5, 0.7).dynamics(jnp.asarray(x), jnp.asarray(u))
-    for _ in range(100_000):
-        x[:2] += 1e-6 * x[2:]
-        x[2:] += 1e-6 * (1.5 * u - 0.7 * x[2:])
-    np.testing.assert_allclose(after, x, atol=1e-5)
-
-
-def test_the_ball_never_enters_an_object() -> None:
-    """100 pushes towards the objects, at up to 2 m/s, for two seconds."""
-    rng = np.random.default_rng(1)
-    shapes = np.array(WORLD.objects)
-    states = []
-    while len(states) < 100:
-        s = rng.uniform(0, 1, 2).astype(np.float32)
-        if float(distance(WORLD, jnp.asarray(s))) > 0.05:
-            way = shapes[rng.integers(3), :2] - s
-            states.append(at(WORLD, [*s, *(2 * way / np.linalg.norm(way))]))
-    stacked = jax.tree.map(lambda *leaves: jnp.stack(leaves), *states)
-    actions = np.asarray(stacked.data.x[:, 2:])[:, None].repeat(20, 1) / 2
-    after = jax.vmap(partial(follow, WORLD))(stacked, jnp.asarray(actions))
-    apart = jax.jit(jax.vmap(jax.vmap(WORLD.distance)))(after.obs[..., :2])
-    assert float(apart.min()) > WORLD.radius - 1e-3
-    assert after.metrics["touch"].any(1).mean() > 0.9
 
 
 def test_contact_against_mujoco() -> None:
@@ -122,7 +82,7 @@ def test_contact_against_mujoco() -> None:
     data = mujoco.MjData(model)
     data.qpos[:], data.qvel[:] = (0.3, 0.62), (0.2, 0.3)
     actions = np.tile(np.array([[0.4, 0.8]], np.float32), (5, 1))
-    states = follow(env, at(env, [0.3, 0.62, 0.2, 0.3]), jnp.asarray(actions))
+    states = along(env, at(env, [0.3, 0.62, 0.2, 0.3]), actions)
     for u, after in zip(actions, states.obs, strict=True):
         for _ in range(200):
             data.qfrc_applied[:] = u
@@ -134,13 +94,13 @@ def test_contact_against_mujoco() -> None:
 def test_the_sensor_errs_as_often_as_its_rates_say() -> None:
     """Missed contacts at a wall; false ones in free space, in proportion to the action's change."""
     env = ContactPlane(false_contact=0.2, missed=0.1)
-    alternating = jnp.asarray(np.tile([[0.6, 0.8], [-0.6, -0.8]], (400, 1)), jnp.float32)
+    alternating = np.tile([[0.6, 0.8], [-0.6, -0.8]], (400, 1))
     free = ContactPlane(objects=(), false_contact=0.2)
-    states = follow(free, at(free, [0.5, 0.5, 0, 0]), alternating)
+    states = along(free, at(free, [0.5, 0.5, 0, 0]), alternating)
     assert float(states.reward[1:].mean()) == pytest.approx(0.2, abs=0.045)  # three deviations
-    still = follow(free, at(free, [0.5, 0.5, 0, 0]), jnp.full((200, 2), 0.5))
+    still = along(free, at(free, [0.5, 0.5, 0, 0]), np.full((200, 2), 0.5))
     assert not still.reward[1:].any()
-    inside = follow(env, at(env, [0.25, 0.6, 0, 0]), jnp.tile(jnp.array([[0.0, 0.3]]), (800, 1)))
+    inside = along(env, at(env, [0.25, 0.6, 0, 0]), np.tile([[0.0, 0.3]], (800, 1)))
     touching = np.asarray(inside.metrics["touch"]) == 1
     assert touching[5:].all()
     missed = 1 - np.asarray(inside.reward)[touching].mean()
@@ -149,8 +109,8 @@ def test_the_sensor_errs_as_often_as_its_rates_say() -> None:
 
 def test_resets_draw_a_clear_start_and_a_pose() -> None:
     env = ContactPlane(theta=(0.5, 0.5, 0.0), spread=(0.1, 0.1, 3.1416))
-    states = jax.jit(jax.vmap(env.reset))(jax.random.split(jax.random.key(0), 200))
-    clear = jax.jit(jax.vmap(env.distance))(states.obs[:, :2], states.data.pose)
+    states = many(env, "reset")(jax.random.split(jax.random.key(0), 200))
+    clear = many(env, "distance")(states.obs[:, :2], states.data.pose)
     assert float(clear.min()) > env.radius
     poses = np.asarray(states.data.pose)
     low, high = poses.min(0), poses.max(0)
@@ -158,18 +118,28 @@ def test_resets_draw_a_clear_start_and_a_pose() -> None:
     assert (high - low > [0.18, 0.18, 6]).all()
 
 
+def test_the_ball_never_enters_an_object() -> None:
+    """100 pushes towards the objects, at up to 2 m/s, for two seconds."""
+    rng = np.random.default_rng(1)
+    s = rng.uniform(0, 1, (1000, 2)).astype(np.float32)
+    s = s[np.asarray(many(WORLD, "distance")(s)) > 0.05][:100]
+    way = np.array(WORLD.objects)[rng.integers(3, size=100), :2] - s
+    u = way / np.linalg.norm(way, axis=1, keepdims=True)
+    states = jax.vmap(lambda x: at(WORLD, x))(np.hstack([s, 2 * u]))
+    after = jax.vmap(lambda state, u: along(WORLD, state, u))(states, u[:, None].repeat(20, 1))
+    apart = jax.vmap(many(WORLD, "distance"))(after.obs[..., :2])
+    assert float(apart.min()) > WORLD.radius - 1e-3
+    assert after.metrics["touch"].any(1).mean() > 0.9
+
+
 def test_the_scene_has_a_disc_where_the_distance_says() -> None:
     """A ray of MuJoCo C that comes from above hits an object where the distance is negative."""
     env = ContactPlane(theta=(0.55, 0.45, 0.5))
     state = env.reset(jax.random.key(0))
-    model = mujoco.MjModel.from_xml_string(env.scene())
-    data = mujoco.MjData(model)
-    data.qpos[:] = env.pose(state)
-    mujoco.mj_forward(model, data)
-    geom = np.zeros(1, np.int32)
-    hits = 0
+    data, geom, hits = shown(env, state), np.zeros(1, np.int32), 0
+    model, distance = data.model, jitted(env, "distance")
     for s in np.random.default_rng(2).uniform(0.02, 0.98, (300, 2)):
-        apart = float(distance(env, jnp.asarray(s, jnp.float32), state.data.pose))
+        apart = float(distance(jnp.asarray(s, jnp.float32), state.data.pose))
         if abs(apart) < 0.005 or np.hypot(*(s - np.asarray(state.obs[:2]))) < 0.04:
             continue
         mujoco.mj_ray(model, data, np.array([*s, 1.0]), np.array([0, 0, -1.0]), None, 1, -1, geom)
@@ -177,20 +147,3 @@ def test_the_scene_has_a_disc_where_the_distance_says() -> None:
         assert (body == "objects") == (apart < 0), s
         hits += apart < 0
     assert hits > 10
-
-
-@pytest.mark.parametrize(
-    ("fields", "words"),
-    [
-        ({"objects": ((0.5, 0.5, 0, 0.1, 0.1),)}, "each is x, y, angle"),
-        ({"objects": ((0.5, 0.5, 0, 0.1, 0.1, 0.2),)}, "rounding"),
-        ({"objects": ((1.5, 0.5, 0, 0.1, 0.1, 0.1),)}, "outside of the box"),
-        ({"objects": ((0.5, 0.5, 0, 0.44, 0.44, 0.01),)}, "leave no room to start"),
-        ({"missed": 1.0}, "missed=1.0"),
-        ({"low": (1.0, 0.0)}, "low="),
-        ({"theta": (0.0, 1.0)}, "theta=.*: must have 3 entries"),
-    ],
-)
-def test_bad_fields_are_refused(fields, words) -> None:
-    with pytest.raises(ValueError, match=words):
-        ContactPlane(**fields)

@@ -11,8 +11,6 @@ import pytest
 from worlds import jitted
 
 from hybrid_rl.envs.humanoid import Humanoid
-from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.envs.mujoco.physics import Physics
 
 FULL = Humanoid("native", "full")
 
@@ -103,9 +101,3 @@ def test_short_is_the_beginning_of_full():
     )
     np.testing.assert_array_equal(short.obs, full.obs[:45])
     np.testing.assert_array_equal(short.reward, full.reward)
-
-
-def test_forces_need_a_sensor():
-    with pytest.raises(ValueError, match=r"hopper.xml: MuJoCo computes cfrc_ext for a <framelin"):
-        Physics("hopper.xml", "native", reads=("cfrc_ext",)).reset(jnp.zeros(6), jnp.zeros(6))
-    assert mjcf.shape("hopper.xml", "cvel") == (5, 6)

@@ -1,189 +1,28 @@
-"""The physics: batches, threads, sensors, errors."""
-
-import threading
-from functools import cache
+"""The physics: resets, the implementation that is chosen, models of others, empty fields."""
 
 import jax
 import jax.numpy as jnp
-import mujoco
 import numpy as np
 import pytest
-from tiny import only_line
 
-from hybrid_rl.envs.mujoco import mjcf, native, xla_callback
-from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, resolve
-from hybrid_rl.errors import UsageError
-
-CHEETAH = Physics("halfcheetah.xml", "native")
-SENSING = """
-<mujoco>
-  <option><flag autoreset="disable"/></option>
-  <worldbody>
-    <body>
-      <joint name="first" axis="0 1 0"/>
-      <geom type="capsule" fromto="0 0 0 0 0 -1" size="0.05" contype="0"/>
-      <body pos="0 0 -1">
-        <joint name="second" axis="0 1 0"/>
-        <geom type="capsule" fromto="0 0 0 0 0 -1" size="0.05" contype="0"/>
-        <site name="tip" pos="0 0 -1"/>
-      </body>
-    </body>
-  </worldbody>
-  <actuator><motor joint="second"/></actuator>
-  <sensor>
-    <jointvel name="spin" joint="second"/>
-    <framepos name="tip" objtype="site" objname="tip"/>
-    <framelinvel name="speed" objtype="site" objname="tip"/>
-  </sensor>
-</mujoco>
-"""
+from hybrid_rl.envs.mujoco.physics import Physics, resolve
 
 
-def _states(physics, count):
-    rng = np.random.default_rng(0)
-    qpos = rng.uniform(-0.1, 0.1, (count, 9)).astype(np.float32)
-    qvel = rng.normal(0, 0.1, (count, 9)).astype(np.float32)
-    ctrl = rng.uniform(-1, 1, (count, 6)).astype(np.float32)
-    return jax.vmap(physics.reset)(qpos, qvel), jnp.asarray(ctrl)
-
-
-@cache
-def _many(physics, decisions):
-    """`decisions` in one loop, for any number of environments; compiled once."""
-
-    def run(state, ctrl):
-        return jax.lax.fori_loop(0, decisions, lambda _, s: physics.step(s, ctrl, 5), state)
-
-    return jax.jit(jax.vmap(run))
-
-
-def _finishes(work, seconds=120.0):
-    """The result of `work`, run on another thread so that a deadlock fails instead of hanging."""
-    out = []
-    thread = threading.Thread(target=lambda: out.append(jax.block_until_ready(work())), daemon=True)
-    thread.start()
-    thread.join(seconds)
-    assert out, f"unfinished after {seconds} s, or failed"
-    return out[0]
-
-
-@pytest.mark.parametrize(("count", "decisions"), [(1, 300), (5, 200), (64, 40), (1024, 4)])
-def test_a_batch_equals_single_environments(count, decisions):
-    state, ctrl = _states(CHEETAH, count)
-    many = _finishes(lambda: _many(CHEETAH, decisions)(state, ctrl))
-    last = jax.tree.map(lambda a: a[-1:], state)
-    one = _finishes(lambda: _many(CHEETAH, decisions)(last, ctrl[-1:]))
-    for a, b in zip(jax.tree.leaves(many), jax.tree.leaves(one), strict=True):
-        np.testing.assert_array_equal(a[-1:], b)
-
-
-def test_programs_run_at_the_same_time():
-    state, ctrl = _states(CHEETAH, 64)
-    run = _many(CHEETAH, 20)
-    alone = jax.block_until_ready(run(state, ctrl))
-    results = [None] * 4
-
-    def work(i):
-        results[i] = run(state, ctrl)
-
-    threads = [threading.Thread(target=work, args=(i,), daemon=True) for i in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join(60)
-    for result in results:
-        np.testing.assert_array_equal(_finishes(lambda r=result: r).qpos, alone.qpos)
-
-
-def test_the_number_of_threads_changes_nothing():
-    state, ctrl = _states(CHEETAH, 64)
-    one, two = (
-        _many(Physics("halfcheetah.xml", "native", threads=n), 5)(state, ctrl) for n in (1, 2)
-    )
-    np.testing.assert_array_equal(one.qpos, two.qpos)
-
-
-def test_the_callback_of_other_devices_gives_the_same(monkeypatch):
-    state, ctrl = _states(CHEETAH, 3)
-    on_cpu = _many(CHEETAH, 4)(state, ctrl)
-    monkeypatch.setattr(jax.lax, "platform_dependent", lambda x, cpu, default: default(x))
-    lowered = _many.__wrapped__(CHEETAH, 4).lower(state, ctrl)
-    assert "hybrid_rl.native" not in lowered.as_text()
-    np.testing.assert_array_equal(lowered.compile()(state, ctrl).qpos, on_cpu.qpos)
-
-
-def test_a_saved_state_continues_with_the_same_bits():
-    state, ctrl = _states(CHEETAH, 2)
-    half = _many(CHEETAH, 10)
-    whole = _many(CHEETAH, 20)(state, ctrl)
-    saved = jax.tree.map(np.asarray, half(state, ctrl))
-    np.testing.assert_array_equal(half(jax.tree.map(jnp.asarray, saved), ctrl).qpos, whole.qpos)
-
-
-def test_only_a_diverged_environment_is_nan():
-    state, ctrl = _states(CHEETAH, 3)
-    state = state.replace(qpos=jnp.asarray(state.qpos).at[1, 2].set(jnp.inf))
-    after = _many(CHEETAH, 1)(state, ctrl)
-    assert np.isnan(after.qpos[1]).all()
-    assert np.isfinite(after.qpos[jnp.array([0, 2])]).all()
-
-
-def test_a_reset_without_sensors_calls_no_mujoco():
-    text = str(jax.make_jaxpr(CHEETAH.reset)(jnp.zeros(9), jnp.zeros(9)))
+@pytest.mark.parametrize("asset", ["halfcheetah.xml", "panda_stack.xml"])
+def test_a_reset_without_sensors_but_of_forces_calls_no_mujoco(asset):
+    """Its state is float32."""
+    body = Physics(asset, "native")
+    qpos, qvel = body.model.qpos0, jnp.zeros(body.model.nv)
+    text, state = str(jax.make_jaxpr(body.reset)(qpos, qvel)), body.reset(qpos, qvel)
     assert "ffi_call" not in text
     assert "callback" not in text
-
-
-def test_a_reset_with_force_sensors_only_calls_no_mujoco():
-    panda = Physics("panda_stack.xml", "native")
-    text = str(jax.make_jaxpr(panda.reset)(panda.model.qpos0, jnp.zeros(21)))
-    assert "ffi_call" not in text
-    np.testing.assert_array_equal(panda.reset(panda.model.qpos0, np.zeros(21)).sensors, 0.0)
-
-
-def test_the_persistent_cache_accepts_compiled_programs():
-    """It refuses programs with JAX's own Python callbacks."""
-    state, ctrl = _states(CHEETAH, 2)
-    text = _many(CHEETAH, 1).lower(state, ctrl).compile().as_text()
-    assert "hybrid_rl.native" in text
-    assert "xla_ffi_python" not in text
-
-
-def _sensors(model, qpos, qvel):
-    data = mujoco.MjData(model)
-    data.qpos[:], data.qvel[:] = qpos, qvel
-    mujoco.mj_forward(model, data)
-    return data.sensordata
-
-
-@pytest.mark.parametrize("implementation", ["native", "mjx"])
-def test_sensors_belong_to_the_state(implementation, tmp_path):
-    file = tmp_path / "double.xml"
-    file.write_text(SENSING)
-    physics = Physics(str(file), implementation)
-    state = jax.jit(physics.reset)(jnp.array([0.5, 1.0]), jnp.array([2.0, -3.0]))
-    after = jax.jit(lambda s: physics.step(s, jnp.ones(1), 5))(state)
-    for now in (state, after):
-        expected = _sensors(mjcf.load(str(file)), now.qpos, now.qvel)
-        np.testing.assert_allclose(now.sensors, expected, atol=1e-5)
-        np.testing.assert_array_equal(physics.sensor(now, "tip"), now.sensors[1:4])
-    assert (np.abs(after.sensors - state.sensors) > 1e-3).sum() >= 5
-
-
-def test_state_is_small_and_float32():
-    state = CHEETAH.reset(np.zeros(9), np.zeros(9))
-    assert isinstance(state, PhysicsState)
     assert {leaf.dtype for leaf in jax.tree.leaves(state)} == {np.dtype("float32")}
-    assert sum(leaf.size for leaf in jax.tree.leaves(state)) == 9 + 9 + 9 + 6
-
-
-def test_auto_is_native_on_a_cpu():
-    assert resolve("auto") == "native"
-    assert resolve("mjx") == "mjx"
+    assert state.sensors is None or not state.sensors.any()
 
 
 def test_auto_depends_on_the_number_of_environments(monkeypatch):
     """With a GPU: MuJoCo C for few; for many or an unknown number Warp, or MJX without it."""
+    assert (resolve("auto"), resolve("mjx")) == ("native", "mjx")
     installed = [True]
     monkeypatch.setattr("hybrid_rl.envs.mujoco.physics.find_spec", lambda _: installed[0] or None)
     monkeypatch.setattr(jax, "default_backend", lambda: "gpu")
@@ -195,11 +34,6 @@ def test_auto_depends_on_the_number_of_environments(monkeypatch):
     assert resolve("mjx", 1) == "mjx"
 
 
-def test_an_unknown_asset_raises():
-    with pytest.raises(ValueError, match=r"no model .*unicorn\.xml.*halfcheetah\.xml"):
-        Physics("unicorn.xml").reset(jnp.zeros(1), jnp.zeros(1))
-
-
 def test_a_model_outside_the_repository(tmp_path):
     file = tmp_path / "own.xml"
     ball = "<worldbody><body><freejoint/><geom size='1'/></body></worldbody>"
@@ -209,38 +43,6 @@ def test_a_model_outside_the_repository(tmp_path):
     np.testing.assert_allclose(state.qvel[2], -9.81 * 0.02, rtol=1e-5)
     far = physics.step(state.replace(qvel=state.qvel.at[0].set(1e12)), jnp.zeros(0), 1)
     assert not abs(far.qvel[0]) < 1e9  # MuJoCo would have reset what diverges
-
-
-def test_an_unstable_simulation_is_one_line_and_no_file(tmp_path, monkeypatch, capfd):
-    """MuJoCo's own warnings are a line at each call, also in MUJOCO_LOG.TXT."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(native, "_WARNED", set())
-    state, ctrl = _states(CHEETAH, 3)
-    huge = jnp.asarray(state.qvel).at[1].set(1e12).at[2].set(1e38)  # NumPy's sum overflows
-    state = state.replace(qvel=huge)
-    step = jax.vmap(lambda state, ctrl: CHEETAH.step(state, ctrl, 5))
-    for _ in range(2):
-        jax.block_until_ready(step(state, ctrl))
-    native._warn("Linesearch objective is not convex")  # which follows from it
-    assert "unstable. (printed once" in only_line(capfd)
-    assert not list(tmp_path.iterdir())
-
-
-def test_what_mjx_lacks_is_one_line():
-    lacking = Physics(SENSING.replace("<option>", '<option solver="PGS">'), "mjx")
-    with pytest.raises(UsageError, match=r"physics=mjx: .*PGS; physics=native has all"):
-        lacking.reset(jnp.zeros(2), jnp.zeros(2))
-
-
-def test_an_error_in_a_foreign_call_is_raised():
-    def fail(x, y):
-        raise ArithmeticError("out of range")
-
-    xla_callback.register("hybrid_rl.test.fails", fail)
-    out = jax.ShapeDtypeStruct((3,), np.float32)
-    call = jax.ffi.ffi_call("hybrid_rl.test.fails", out)
-    with pytest.raises(Exception, match="out of range"):
-        jax.block_until_ready(jax.jit(call)(jnp.zeros(3)))
 
 
 def test_a_state_has_no_empty_arrays():

@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import mujoco
 import numpy as np
 import pytest
-from worlds import jitted
+from worlds import along, jitted, placed, shown
 
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.quadcopter import Quadcopter
@@ -34,7 +34,7 @@ def _rates(x, u, damping):
     return np.concatenate([(R @ cross).ravel(), R @ v, w_t, v_t])
 
 
-def _integrated(w, v, controls, damping, substeps=20):
+def _integrated(w, v, controls, damping, substeps=4):
     """Gravity, w and v in the body frame [T, 9], by small Runge-Kutta steps."""
     x, observed, dt = np.concatenate([np.eye(3).ravel(), np.zeros(3), w, v]), [], 0.005 / substeps
     for u in controls:
@@ -47,16 +47,6 @@ def _integrated(w, v, controls, damping, substeps=20):
     return np.array(observed)
 
 
-def _fly(env, state, actions):
-    def one(state, action):
-        state = env.step(state, action)
-        return state, state
-
-    return jax.jit(lambda s, a: jax.lax.scan(one, s, a)[1])(
-        state, jnp.asarray(actions, jnp.float32)
-    )
-
-
 @pytest.mark.parametrize("damping", [False, True])
 def test_it_follows_the_equations_of_the_thesis(damping):
     env = Quadcopter("native", damping=damping)
@@ -64,41 +54,9 @@ def test_it_follows_the_equations_of_the_thesis(damping):
     actions = np.random.default_rng(0).uniform(-1, 1, (200, 4)).astype(np.float32)
     w, v = np.asarray(state.obs[3:6], float), np.asarray(state.obs[6:], float)
     expected = _integrated(w, v, 6.0 * actions.astype(float), damping)
-    path = _fly(env, state, actions)
+    path = along(env, state, actions)
     np.testing.assert_allclose(path.obs, expected, atol=2e-3)
     assert np.abs(expected).max() > 5
-
-
-def test_mass_and_inertia():
-    model = mjcf.load("quadcopter.xml")
-    body = model.body("quadcopter")
-    assert body.mass[0] == MASS
-    np.testing.assert_allclose(np.sort(body.inertia), np.sort(INERTIA))
-    arms = [np.linalg.norm(model.site(name).pos) for name in ("front", "left", "back", "right")]
-    np.testing.assert_allclose(arms, ARM)
-
-
-def test_hover_thrust_hovers():
-    env = Quadcopter("native", task="track", start_speed=0.0, target_distance=0.0)
-    assert env.hovering == pytest.approx(2.4525)
-    state = jitted(env, "reset")(jax.random.key(0))
-    path = _fly(env, state, np.full((200, 4), env.hovering / 6))
-    assert np.abs(path.obs[-1] - np.array([0, 0, -GRAVITY] + [0] * 9)).max() < 1e-4
-    np.testing.assert_allclose(path.reward, 0.0, atol=1e-6)
-    np.testing.assert_array_equal(path.metrics["success"], 1.0)
-    assert not path.terminated.any()
-
-
-def test_a_changed_quadcopter_hovers_by_its_own_controls():
-    """A weak motor at more control, so that there is no moment; the reward is then 0, too."""
-    factors = np.array([0.8, 1.0, 1.2, 0.6])
-    change = {"mass": 1.2, "payload": 0.1, "motors": factors}
-    env = Quadcopter("native", start_speed=0.0, **change)
-    np.testing.assert_allclose(env.hovering, 2.4525 * (0.72 + 0.1) / 0.6 / factors)
-    obs, action = env.equilibrium()
-    path = _fly(env, jitted(env, "reset")(jax.random.key(0)), np.tile(action, (200, 1)))
-    np.testing.assert_allclose(path.obs[-1], obs, atol=1e-4)
-    np.testing.assert_allclose(path.reward, 0.0, atol=1e-6)
 
 
 def test_unidirectional_motors():
@@ -126,40 +84,16 @@ def test_reward():
     )
 
 
-def test_the_target_moves():
-    env = Quadcopter("native", task="track", target_speed=1.0)
-    state = jitted(env, "reset")(jax.random.key(0))
-    assert (np.abs(state.info["target"]) <= 2.0).all()
-    assert (np.abs(state.info["target_velocity"]) > 0).all()
-    path = _fly(env, state, np.zeros((40, 4)))
-    expected = state.info["target"] + 0.2 * state.info["target_velocity"]
-    np.testing.assert_allclose(path.info["target"][-1], expected, atol=1e-5)
-    np.testing.assert_allclose(env.pose(state)[7:], state.info["target"])
-    relative = state.data.qvel[:3] - state.info["target_velocity"]
-    np.testing.assert_allclose(state.obs[6:9], relative, atol=1e-6)  # level at the start
-
-
-def test_points_of_observations_follow_a_moving_target():
-    env = Quadcopter("native", task="track", target_speed=1.0)
-    first = jitted(env, "reset")(jax.random.key(0))
-    path = _fly(env, first, np.random.default_rng(0).uniform(-1, 1, (40, 4)))
-    points = env.points(first, jnp.concatenate((first.obs[None], path.obs)))
-    np.testing.assert_allclose(points[0, 0], first.data.qpos[:3])
-    np.testing.assert_allclose(points[1:, 0], path.data.qpos[:, :3], atol=1e-4)
-
-
 def test_wind_is_a_force_on_the_body():
     """As MuJoCo C has it: m a along x, in a fall with moving rotors."""
     env, actions = Quadcopter("native", wind=3.0), np.random.default_rng(1).uniform(-1, 1, (100, 4))
     state = jitted(env, "reset")(jax.random.key(2))
-    model = mjcf.load("quadcopter.xml")
-    data = mujoco.MjData(model)
-    data.qpos[:], data.qvel[:] = state.data.qpos, state.data.qvel
+    model, data = placed("quadcopter.xml", state.data.qpos, state.data.qvel)
     data.xfrc_applied[1, 0] = 3.0 * MASS
     for action in actions:
         data.ctrl[:4] = 6 * action
         mujoco.mj_step(model, data)
-    last = jax.tree.map(lambda a: a[-1], _fly(env, state, actions)).data
+    last = jax.tree.map(lambda a: a[-1], along(env, state, actions)).data
     np.testing.assert_allclose(last.qvel, data.qvel, atol=1e-4)
     np.testing.assert_allclose(last.qpos[:3], data.qpos[:3], atol=5e-3)  # half a step ahead
     assert data.qvel[0] > 1.0
@@ -170,22 +104,43 @@ def test_another_asset(tmp_path):
     file.write_text(mjcf.text("quadcopter.xml").replace('mass="0.6"', 'mass="1.2"'))
     env = Quadcopter("native", asset=str(file))
     assert env.hovering == pytest.approx(4.905)
-    assert (
-        mujoco.MjModel.from_xml_string(env.scene()).nq
-        == env.pose(env.reset(jax.random.key(0))).shape[0]
-    )
+    shown(env, env.reset(jax.random.key(0)))  # its scene has its joints
 
 
-def test_an_unknown_task_raises():
-    with pytest.raises(ValueError, match="task=loop: choose one of hover, track"):
-        Quadcopter(task="loop")
+def test_the_target_moves():
+    """Observations are relative to it, and tell where the body is."""
+    env = Quadcopter("native", task="track", target_speed=1.0)
+    state = jitted(env, "reset")(jax.random.key(0))
+    target, speed = state.info["target"], state.info["target_velocity"]
+    assert (np.abs(target) <= 2.0).all()
+    assert (np.abs(speed) > 0).all()
+    np.testing.assert_allclose(env.pose(state)[7:], target)
+    relative = state.data.qvel[:3] - speed
+    np.testing.assert_allclose(state.obs[6:9], relative, atol=1e-6)  # level at the start
+    path = along(env, state, np.random.default_rng(0).uniform(-1, 1, (40, 4)))
+    np.testing.assert_allclose(path.info["target"][-1], target + 0.2 * speed, atol=1e-5)
+    points = env.points(state, jnp.concatenate((state.obs[None], path.obs)))[:, 0]
+    np.testing.assert_allclose(points[0], state.data.qpos[:3])
+    np.testing.assert_allclose(points[1:], path.data.qpos[:, :3], atol=1e-4)
 
 
-@pytest.mark.parametrize("task", ["hover", "track"])
-@pytest.mark.parametrize("bidirectional", [False, True])
-def test_at_equilibrium_it_hovers(task, bidirectional):
-    env = Quadcopter("native", task, bidirectional=bidirectional, start_speed=0, target_distance=0)
+WEAK = {"mass": 1.2, "payload": 0.1, "motors": np.array([0.8, 1.0, 1.2, 0.6])}
+
+
+@pytest.mark.parametrize(
+    "given",
+    [{"task": "hover"}, {"task": "track"}, {"bidirectional": False}, WEAK],
+    ids=["hover", "track", "upwards", "weak"],
+)
+def test_at_equilibrium_it_hovers(given):
+    """A weak motor at more control, so that there is no moment; the reward is 0 in any body."""
+    env = Quadcopter("native", **{"start_speed": 0.0, "target_distance": 0.0} | given)
+    factor = (0.72 + 0.1) / 0.6 / WEAK["motors"] if given is WEAK else 1.0
+    np.testing.assert_allclose(env.hovering, 2.4525 * factor)
     obs, action = env.equilibrium()
-    after = jitted(env, "step")(env.reset(jax.random.key(0)), action)
-    np.testing.assert_allclose(after.obs, obs, atol=1e-6)
-    assert abs(after.reward) < 1e-9
+    path = along(env, jitted(env, "reset")(jax.random.key(0)), np.tile(action, (200, 1)))
+    np.testing.assert_allclose(path.obs[0], obs, atol=1e-6)
+    np.testing.assert_allclose(path.obs[-1], obs, atol=1e-4)
+    np.testing.assert_allclose(path.reward, 0.0, atol=1e-6)
+    np.testing.assert_array_equal(path.metrics["success"], 1.0)
+    assert not path.terminated.any()

@@ -1,19 +1,16 @@
 """Another body in each episode, against robots whose body is changed for good."""
 
-from functools import partial
-
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from tiny import call, call_train
+import small
 from worlds import make
 
-from hybrid_rl import evaluate
-from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.cartpole import Cartpole
 from hybrid_rl.envs.halfcheetah import HalfCheetah
+from hybrid_rl.settings import build as config
 from hybrid_rl.training.episode import Episode
 
 FIXED = {"mass": [1.5, 1.5], "friction": [0.5, 0.5], "motors": [0.8, 0.8], "payload": [0.4, 0.4]}
@@ -69,34 +66,17 @@ def test_what_is_not_drawn_stays_that_of_the_model_and_the_start_is_the_same():
 @pytest.mark.parametrize(
     ("env", "given", "line"),
     [
-        (
-            Cartpole("native"),
-            {"mass": (2, 1)},
-            "randomise.mass=[2.0, 1.0]: must be [low, high], or",
-        ),
-        (Cartpole("native"), {"mass": 2}, "randomise.mass=2: must be a list, or null"),
-        (Cartpole("native"), {"mass": (0, 1)}, "randomise.mass=[0, 1]: must be above 0, or null"),
-        (Pendulum(), {"mass": (1, 2)}, "only robots in MuJoCo have other bodies"),
+        (Cartpole("native"), {"mass": (2, 1)}, r"randomise.mass=.*: must be \[low, high\]"),
+        (Cartpole("native"), {"weight": (1, 2)}, r"episode\.randomise: .*'weight'"),
+        (Pendulum(), {"mass": (1, 2)}, "randomise=.*: only robots in MuJoCo have other bodies"),
     ],
 )
 def test_ranges_that_cannot_be_drawn_are_refused(env, given, line):
-    with pytest.raises(ValueError, match="randomise") as error:
+    with pytest.raises(ValueError, match=line):
         Episode(env, randomise=given)
-    assert line in str(error.value)
 
 
-def test_commands_train_and_evaluate_with_drawn_bodies(tmp_path, capfd):
-    folder = tmp_path / "run"
-    words = ["task=cartpole", "algo=sac", "settings=light", "total_steps=20", "random_steps=20"]
-    words += ["episode.steps=10", "eval_every=20"]
-    drawn = "episode.randomise.mass=[0.5,2]"
-    assert call_train(*words, drawn, f"run_dir={folder}") == 0
-    run = partial(command.run, evaluate.main)
-    wider = "episode.randomise.friction=[0.1,3]"
-    assert call(run, f"run={folder}", "episodes=2", wider) == 0
-    assert [*folder.glob("evaluation_*randomise.friction*.json")]
-    capfd.readouterr()
-    typo = "episode.randomise.masss=[1,2]"
-    assert call(run, f"run={folder}", typo) == 2
-    assert "episode.randomise: " in (line := capfd.readouterr().err)
-    assert "'masss'" in line
+def test_a_decision_of_a_drawn_body_keeps_the_shape_of_its_state():
+    small.trace(
+        config.build(small.load("sac", "task=cartpole", "episode.randomise.mass=[0.5,2]")).agent
+    )

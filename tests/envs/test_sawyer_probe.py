@@ -7,6 +7,7 @@ import jax.numpy as jnp
 import mujoco
 import numpy as np
 import pytest
+from worlds import along, jitted, many
 
 from hybrid_rl.envs.analytic.contact_plane import ContactPlane
 from hybrid_rl.envs.analytic.point_mass import PointMass
@@ -23,25 +24,18 @@ TRIALS = 4
 @pytest.fixture(scope="module")
 def paths():
     """The first states [TRIALS], actions [TRIALS, 30, 2] to and fro, and the states after them."""
-    first = jax.jit(jax.vmap(WORLD.reset))(jax.random.split(jax.random.key(3), TRIALS))
+    first = many(WORLD, "reset")(jax.random.split(jax.random.key(3), TRIALS))
     to_middle = np.array([0.55, 0.0]) - np.asarray(first.obs[:, :2])
     to_middle /= np.linalg.norm(to_middle, axis=1, keepdims=True)
     to_and_fro = np.repeat([1.0, -1.0], 15)
     actions = jnp.asarray(to_middle[:, None] * to_and_fro[:, None], jnp.float32)
-
-    def follow(state, actions):
-        def one(state, u):
-            state = WORLD.step(state, u)
-            return state, state
-
-        return jax.lax.scan(one, state, actions)[1]
-
-    return first, actions, jax.jit(jax.vmap(follow))(first, actions)
+    states = jax.vmap(lambda state, u: along(WORLD, state, u))(first, actions)
+    return first, actions, states
 
 
 def test_it_starts_where_the_contact_plane_does(paths) -> None:
     """By inverse kinematics, within 0.5 mm."""
-    want = jax.jit(jax.vmap(PLANE.reset))(jax.random.split(jax.random.key(3), TRIALS))
+    want = many(PLANE, "reset")(jax.random.split(jax.random.key(3), TRIALS))
     np.testing.assert_allclose(paths[0].obs, want.obs, atol=5e-4)
 
 
@@ -50,14 +44,14 @@ def test_the_tip_moves_as_the_free_point_mass_until_it_touches(paths) -> None:
     first, actions, states = paths
     free = PointMass(WORLD.acceleration, WORLD.drag)
     before = jnp.concatenate([first.obs[:, None], states.obs[:, :-1]], 1)
-    want = jax.jit(jax.vmap(jax.vmap(free.dynamics)))(before, actions)
+    want = jax.vmap(many(free, "dynamics"))(before, actions)
     p = np.asarray(states.obs[..., :2])
     inside = ((p > WORLD.low) & (p < WORLD.high)).all(-1)
     apart = inside & (np.cumsum(np.asarray(states.reward), 1) == 0)
     assert apart.sum() > 20
     error = np.abs(np.asarray(states.obs - want))[apart]
     assert (error.max(0) < [2e-3, 2e-3, 2e-2, 2e-2]).all()
-    tip, rotation, _ = jax.jit(jax.vmap(jax.vmap(TIP.pose)))(states.data.qpos)
+    tip, rotation, _ = jax.vmap(many(TIP, "pose"))(states.data.qpos)
     assert np.ptp(np.asarray(tip[..., 2])) < 5e-3
     down = jax.jit(jax.vmap(rotate, (0, None)))(rotation[apart], jnp.array([0.0, 0.0, 1.0]))
     assert float(down[:, 2].max()) < -np.cos(0.02)  # [rad]
@@ -88,7 +82,7 @@ def test_the_objects_of_the_model_are_those_of_the_distance() -> None:
     data = mujoco.MjData(model)
     parts = [i for i in range(model.ngeom) if model.geom(i).name.startswith("object")]
     reached = jax.jit(lambda p: WORLD._reached(p, jnp.array(HOME)))
-    distance = jax.jit(WORLD.distance)
+    distance = jitted(WORLD, "distance")
     for s in np.random.default_rng(0).uniform(WORLD.low, WORLD.high, (10, 2)):
         data.qpos[:] = reached(jnp.asarray(s, jnp.float32))
         mujoco.mj_kinematics(model, data)
@@ -104,7 +98,7 @@ def test_it_is_drawn_where_the_tip_was_observed(paths) -> None:
     _, _, states = paths
     here, there = (jax.tree.map(lambda a, t=t: a[0, t], states) for t in (5, 10))
     np.testing.assert_allclose(WORLD.pose(here), here.data.qpos, atol=0.02)
-    moved = jax.jit(TIP.pose)(WORLD.pose(here.replace(obs=there.obs)))[0]
+    moved = jitted(TIP, "pose")(WORLD.pose(here.replace(obs=there.obs)))[0]
     np.testing.assert_allclose(moved[:2], there.obs[:2], atol=5e-4)
     model = mujoco.MjModel.from_xml_string(WORLD.scene())
     assert model.nq == 7
@@ -115,16 +109,7 @@ def test_the_points_of_observations_are_those_of_the_tip(paths) -> None:
     """The height, which is not observed, within 2 mm."""
     _, _, states = paths
     one = jax.tree.map(lambda a: a[0], states)
-    got = jax.jit(WORLD.points)(jax.tree.map(lambda a: a[0], one), one.obs)
-    want = jax.jit(jax.vmap(TIP.pose))(one.data.qpos)[0]
+    got = jitted(WORLD, "points")(jax.tree.map(lambda a: a[0], one), one.obs)
+    want = many(TIP, "pose")(one.data.qpos)[0]
     np.testing.assert_allclose(got[:, 0, :2], want[:, :2], atol=1e-6)
     np.testing.assert_allclose(got[:, 0, 2], want[:, 2], atol=2e-3)
-
-
-@pytest.mark.parametrize(
-    ("fields", "words"),
-    [({"lead": 0.0}, "lead=0.0: must be above 0"), ({"low": (0.9, 0.0)}, "low=")],
-)
-def test_bad_fields_are_refused(fields, words) -> None:
-    with pytest.raises(ValueError, match=words):
-        SawyerProbe(**fields)

@@ -1,7 +1,6 @@
 """Sawyer under torque control: reference, model, inverse dynamics and controllers."""
 
 from functools import cache
-from typing import Any, cast
 
 import jax
 import jax.numpy as jnp
@@ -9,12 +8,12 @@ import mujoco
 import numpy as np
 import pytest
 from scipy.linalg import null_space
+from worlds import placed
 
 from hybrid_rl.envs import sawyer_reference
 from hybrid_rl.envs.experts.tracking import ComputedTorque, JointPD
 from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.envs.mujoco.inverse_dynamics import torques
-from hybrid_rl.envs.sawyer_torque import TIP, SawyerTorque, asset
+from hybrid_rl.envs.sawyer_torque import SawyerTorque, asset
 from hybrid_rl.types import Params
 
 NEUTRAL = (0, -1.18, 0, 2.18, 0, 0.57, 3.3161)  # [rad], Rethink Robotics' sawyer_robot
@@ -31,10 +30,7 @@ def _thesis(t):
 
 def _tip(q):
     """Position of the tip [3] and its Jacobian [3, 7] in MuJoCo C."""
-    model, jacobian = mjcf.load("sawyer_torque.xml"), np.zeros((3, 7))
-    data = mujoco.MjData(model)
-    data.qpos[:] = q
-    mujoco.mj_forward(model, data)
+    (model, data), jacobian = placed("sawyer_torque.xml", q), np.zeros((3, 7))
     mujoco.mj_jacSite(model, data, jacobian, None, model.site("tip").id)
     return data.site("tip").xpos, jacobian
 
@@ -66,13 +62,6 @@ def test_the_rates_of_the_reference_are_its_derivative():
     np.testing.assert_allclose(fine[1][1], (fine[0][2] - fine[0][0]) / 2e-3, atol=1e-5)
     np.testing.assert_allclose(fine[2][1], (fine[1][2] - fine[1][0]) / 2e-3, atol=1e-4)
     np.testing.assert_array_equal(table[0, :14], [*NEUTRAL, *np.zeros(7)])
-
-
-def test_kinematics_at_the_reference():
-    on_path = sawyer_reference.table(1, DT)[BLEND:-1:30]
-    points = jax.jit(jax.vmap(lambda q: TIP.pose(q)[0]))(jnp.asarray(on_path[:, :7], jnp.float32))
-    expected = _thesis(30 * DT * np.arange(len(on_path)))
-    np.testing.assert_allclose(points, expected, atol=2e-6)
 
 
 @cache
@@ -126,10 +115,7 @@ def test_torques_accelerate_the_joints_as_the_mass_matrix_says():
     step = jax.jit(jax.vmap(env.step, (None, 0)))
     rates = [step(rest, sign * size * jnp.eye(7)).obs[:, 7:14] for sign in (1, -1)]
     gain = np.asarray(rates[0] - rates[1]).T / (2 * size)
-    model = mjcf.load("sawyer_torque.xml")
-    data, mass = mujoco.MjData(model), np.zeros((7, 7))
-    data.qpos[:] = NEUTRAL
-    mujoco.mj_forward(model, data)
+    (model, data), mass = placed("sawyer_torque.xml", NEUTRAL), np.zeros((7, 7))
     mujoco.mj_fullM(model, data, mass)
     expected = DT * np.linalg.inv(mass) @ np.diag(LIMITS)
     assert np.linalg.norm(gain - expected) < 0.05 * np.linalg.norm(expected)
@@ -137,36 +123,16 @@ def test_torques_accelerate_the_joints_as_the_mass_matrix_says():
 
 
 def test_gravity_pulls_the_payload_alone():
-    model = mjcf.load(asset("maker", 1.5))
+    model, data = placed(asset("maker", 1.5), NEUTRAL)
     np.testing.assert_array_equal(model.dof_damping.reshape(7, -1)[:, 0], DAMPING)
     plain = mjcf.load(asset("none"))
     assert not plain.dof_damping.any()
     assert model.body_mass.sum() - plain.body_mass.sum() == pytest.approx(1.5)
-    data, jacobian = mujoco.MjData(model), np.zeros((3, 7))
-    data.qpos[:] = NEUTRAL
-    mujoco.mj_forward(model, data)
+    jacobian = np.zeros((3, 7))
     mujoco.mj_jacBodyCom(model, data, jacobian, None, model.body("rod").id)
     pull = data.qfrc_passive - data.qfrc_bias
     np.testing.assert_allclose(pull, jacobian.T @ [0, 0, -9.81 * 1.5], atol=1e-9)
     np.testing.assert_array_equal(model.geom_size, plain.geom_size)
-
-
-@pytest.mark.parametrize(("damping", "payload"), [("none", 0.0), ("maker", 1.5)])
-def test_inverse_dynamics_agree_with_mujoco(damping, payload):
-    name, rng = asset(damping, payload), np.random.default_rng(0)
-    model = mjcf.load(name)
-    data, inverse = mujoco.MjData(model), jax.jit(lambda *x: torques(name, *x))
-    for _ in range(5):
-        x = [scale * rng.normal(size=7).astype(np.float32) for scale in (0.7, 2, 10)]
-        data.qpos[:], data.qvel[:], data.qacc[:] = x
-        mujoco.mj_inverse(model, data)
-        assert not data.nefc  # within the joints' ranges
-        np.testing.assert_allclose(inverse(*x), data.qfrc_inverse, atol=1e-4)
-
-
-def test_inverse_dynamics_of_a_tree_are_refused():
-    with pytest.raises(ValueError, match=r"halfcheetah\.xml: must be one chain of hinges"):
-        torques("halfcheetah.xml", *3 * [jnp.zeros(9)])
 
 
 def _rmse(kind, **fields):
@@ -174,24 +140,23 @@ def _rmse(kind, **fields):
     return np.sqrt((_play(kind, **fields)[1][5 + BLEND :] ** 2).mean())
 
 
-def test_computed_torque_tracks_within_a_millimetre():
-    """0.11 mm measured; joint PD 8 mm."""
-    assert _rmse(ComputedTorque) < 1e-3
-    assert 2e-3 < _rmse(JointPD) < 15e-3
+INTEGRAL = {"frequency": 30.0, "integral": 10.0}
 
 
-def test_an_unknown_payload_pulls_both_from_the_path():
-    """41 and 44 mm measured with 1 kg."""
-    for kind in (ComputedTorque, JointPD):
-        assert 20e-3 < _rmse(kind, payload=1.0) < 80e-3
-
-
-def test_an_integral_removes_most_of_what_a_payload_does():
-    """3.2 mm measured with w = 30 rad/s and k = 10/s, within 1.6 s; without payload 0.1 mm."""
-    fields = {"frequency": 30.0, "integral": 10.0}
-    assert _rmse(ComputedTorque, payload=1.0, **fields) < 6e-3
-    assert _rmse(ComputedTorque, **fields) < 1e-3
-    assert _rmse(JointPD, payload=1.0, integral=10.0) < 15e-3
+@pytest.mark.parametrize(
+    ("kind", "fields", "low", "high"),
+    [
+        (ComputedTorque, {}, 0, 1e-3),  # measured: 0.11 mm
+        (JointPD, {}, 2e-3, 15e-3),  # 8 mm
+        (ComputedTorque, {"payload": 1.0}, 20e-3, 80e-3),  # 41 mm
+        (JointPD, {"payload": 1.0}, 20e-3, 80e-3),  # 44 mm
+        (ComputedTorque, {"payload": 1.0, **INTEGRAL}, 0, 6e-3),  # 3.2 mm, within 1.6 s
+        (JointPD, {"payload": 1.0, "integral": 10.0}, 0, 15e-3),
+    ],
+)
+def test_controllers_track_the_path(kind, fields, low, high):
+    """An unknown payload pulls both from it, and an integral removes most of that."""
+    assert low < _rmse(kind, **fields) < high
 
 
 def test_noise_is_on_the_rates_alone():
@@ -204,28 +169,3 @@ def test_noise_is_on_the_rates_alone():
     np.testing.assert_array_equal(np.delete(noisy - clean, range(7, 14), 1), 0)
     away = np.asarray(clean[:, :7]) - NEUTRAL
     np.testing.assert_allclose(np.abs(away).max(0), 0.05, rtol=0.02)
-
-
-@pytest.mark.parametrize(
-    ("field", "value", "line"),
-    [
-        ("damping", "some", "damping=some: choose one of none, maker"),
-        ("payload", -0.1, "payload=-0.1: must be 0 or more"),
-        ("learn", -1, "learn=-1: must be a whole number, 0 or more"),
-        ("rounds", 0, "rounds=0: must be a whole number, 1 or more"),
-        ("start_spread", -1.0, "start_spread=-1.0: must be 0 or more"),
-        ("sensor_noise", -1.0, "sensor_noise=-1.0: must be 0 or more"),
-    ],
-)
-def test_values_out_of_range_are_named(field, value, line):
-    with pytest.raises(ValueError, match=line):
-        SawyerTorque(**{field: value})
-
-
-def test_controllers_refuse_other_tasks_and_gains():
-    with pytest.raises(ValueError, match="needs task=sawyer_torque"):
-        JointPD(cast(Any, TIP))
-    with pytest.raises(ValueError, match="frequency=0: must be above 0"):
-        ComputedTorque(SawyerTorque(), frequency=0)
-    with pytest.raises(ValueError, match=r"stiffness=\[1\.0\]: must have 7 entries"):
-        JointPD(SawyerTorque(), stiffness=(1.0,))

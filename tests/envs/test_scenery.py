@@ -88,10 +88,3 @@ def test_a_scene_with_light_and_sky_stays_as_it_is(asset):
     assert (drawn.nlight, drawn.ntex) == (written.nlight, written.ntex)
     np.testing.assert_array_equal(drawn.geom_rgba, written.geom_rgba)
     assert scenery.camera(drawn).type == mujoco.mjtCamera.mjCAMERA_FIXED
-
-
-def test_a_state_names_its_model():
-    """Through a step, too."""
-    state = Acrobot().step(Acrobot().reset(None), jnp.zeros(1))
-    assert state.data.asset == scenery.scene_of(Acrobot()) == RED
-    np.testing.assert_array_equal(scenery.pose_of(Acrobot())(state), state.data.qpos)

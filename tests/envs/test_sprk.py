@@ -1,19 +1,16 @@
 """The hamster ball in MuJoCo against the contact plane and the free point mass."""
 
-from functools import partial
-
 import jax
 import jax.numpy as jnp
 import mujoco
 import numpy as np
 import pytest
-from hydra.utils import instantiate
+from worlds import along, jitted, many
 
 from hybrid_rl.envs.analytic.contact_plane import ContactPlane
 from hybrid_rl.envs.analytic.point_mass import PointMass
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.sprk import TIMESTEP, Sprk
-from hybrid_rl.settings import build as config
 
 pytestmark = pytest.mark.turns(3)
 
@@ -22,21 +19,10 @@ DISC = (0.5, 0.8, 0.0, 0.15, 0.15, 0.15)
 POSE = (0.55, 0.45, 0.5)
 
 
-@partial(jax.jit, static_argnums=0)
-def follow(env, state, actions):
-    """The states after each of actions [T, 2]."""
-
-    def one(state, u):
-        state = env.step(state, u)
-        return state, state
-
-    return jax.lax.scan(one, state, actions)[1]
-
-
 def at(env, x):
     """The state at x [4], with the objects in their reference arrangement."""
-    state, x = jax.jit(env.reset)(jax.random.key(0)), jnp.asarray(x, jnp.float32)
-    return state.replace(data=jax.jit(env._at)(x[:2], x[2:]), obs=x)
+    state, x = jitted(env, "reset")(jax.random.key(0)), jnp.asarray(x, jnp.float32)
+    return state.replace(data=jitted(env, "_at")(x[:2], x[2:]), obs=x)
 
 
 @pytest.mark.parametrize("rolling", [False, True])
@@ -49,7 +35,7 @@ def test_free_flight_is_the_point_mass_but_for_eulers_steps(rolling) -> None:
     env = Sprk("native", objects=(), drag=drag, lag=0.0, rolling=rolling)
     free = PointMass(1.0, drag)
     actions = np.random.default_rng(0).uniform(-1, 1, (30, 2)).astype(np.float32)
-    states = follow(env, at(env, start), jnp.asarray(actions))
+    states = along(env, at(env, start), actions)
     x, path = jnp.asarray(start, jnp.float32), []
     for u in actions:
         x = free.dynamics(x, jnp.asarray(u))
@@ -68,7 +54,7 @@ def test_free_flight_is_the_point_mass_but_for_eulers_steps(rolling) -> None:
 def test_the_motor_follows_with_a_lag() -> None:
     """From rest, v = a (t - lag (1 - exp(-t / lag))); Euler's sum is off by h a at the most."""
     env = Sprk("native", objects=(), lag=0.05)
-    states = follow(env, at(env, np.zeros(4)), jnp.ones((3, 2)))
+    states = along(env, at(env, np.zeros(4)), jnp.ones((3, 2)))
     t = 0.1 * np.arange(1, 4)
     want = t - 0.05 * (1 - np.exp(-t / 0.05))
     np.testing.assert_allclose(states.obs[:, 2], want, atol=TIMESTEP)
@@ -81,10 +67,10 @@ def test_contacts_are_those_of_the_contact_plane(shape) -> None:
     env, plane = Sprk("native", lag=0.0, **fields), ContactPlane(**fields)
     x = [0.45, 0.55, 0.1, 0.3]
     actions = jnp.tile(jnp.array([[0.2, 0.8]]), (8, 1))
-    states = follow(env, at(env, x), actions)
+    states = along(env, at(env, x), actions)
     start = plane.reset(jax.random.key(0))
     start = start.replace(data=start.data._replace(x=jnp.array(x)), obs=jnp.array(x))
-    want = follow(plane, start, actions)
+    want = along(plane, start, actions)
     np.testing.assert_allclose(states.obs[:, :2], want.obs[:, :2], atol=5e-3)
     assert states.reward.argmax() == want.reward.argmax() > 0
     np.testing.assert_array_equal(states.reward[-3:], want.reward[-3:])
@@ -95,35 +81,18 @@ def test_objects_are_turned_and_the_start_is_that_of_the_contact_plane() -> None
     fields = {"theta": POSE, "spread": (0.1, 0.1, 3.0), "radius": 0.0365}
     env, plane = Sprk("native", **fields), ContactPlane(**fields)
     keys = jax.random.split(jax.random.key(0), 20)
-    first, same = (jax.jit(jax.vmap(world.reset))(keys) for world in (env, plane))
+    first, same = (many(world, "reset")(keys) for world in (env, plane))
     np.testing.assert_allclose(first.obs, same.obs, atol=1e-6)
     np.testing.assert_array_equal(first.info["pose"], same.data.pose)
     middle = 0.5 - first.obs[:, :2]
     u = middle / jnp.linalg.norm(middle, axis=1, keepdims=True)
-    after = jax.vmap(partial(follow, env))(first, jnp.repeat(u[:, None], 15, 1))
+    after = jax.vmap(lambda state, u: along(env, state, u))(first, jnp.repeat(u[:, None], 15, 1))
     pose = after.info["pose"]
-    distance = jax.jit(jax.vmap(jax.vmap(plane.distance)))(after.obs[..., :2], pose)
+    distance = jax.vmap(many(plane, "distance"))(after.obs[..., :2], pose)
     assert float(distance.min()) > env.radius - 3e-3
     touched = np.asarray(after.metrics["touch"]).any(1)
     assert touched.sum() > 5
     assert (np.asarray(distance).min(1)[touched] < env.radius + 5e-3).all()
-
-
-def test_mujoco_measures_the_distance_to_rounded_boxes() -> None:
-    """Distance of the ball to MuJoCo's geoms, outside of them."""
-    env = Sprk("native")
-    model = mjcf.load(env.asset)
-    data = mujoco.MjData(model)
-    parts = [i for i in range(model.ngeom) if model.geom(i).name.startswith("object")]
-    assert len(parts) == model.npair == 13
-    for s in np.random.default_rng(0).uniform(0, 1, (40, 2)):
-        data.qpos[:] = s
-        mujoco.mj_kinematics(model, data)
-        want = float(env.distance(jnp.asarray(s, jnp.float32)))
-        ball = model.geom("ball").id
-        got = min(mujoco.mj_geomDistance(model, data, ball, i, 9.0, None) for i in parts)
-        if want > env.radius:
-            assert got + env.radius == pytest.approx(want, abs=1e-5)
 
 
 def test_the_accelerometer_feels_quick_movements_and_misses_weak_contacts() -> None:
@@ -133,48 +102,32 @@ def test_the_accelerometer_feels_quick_movements_and_misses_weak_contacts() -> N
     changes = np.array([0.9, 1.1]) * env.threshold / share
     for change, felt in zip(changes, (0, 1), strict=True):
         actions = jnp.array([[-change / 2, 0.0], [change / 2, 0.0]] * 3)
-        states = follow(env, at(env, [0.5, 0.2, 0, 0]), actions)
+        states = along(env, at(env, [0.5, 0.2, 0, 0]), actions)
         np.testing.assert_array_equal(states.reward[1:], felt)
         assert not states.metrics["touch"].any()
     for push, felt in ((0.3, 0), (0.7, 1)):
-        states = follow(env, at(env, [0.5, 0.65, 0, 0]), jnp.tile(jnp.array([[0, push]]), (20, 1)))
+        states = along(env, at(env, [0.5, 0.65, 0, 0]), jnp.tile(jnp.array([[0, push]]), (20, 1)))
         np.testing.assert_array_equal(states.metrics["touch"][-5:], 1)
         np.testing.assert_array_equal(states.reward[-5:], felt)
 
 
-def test_mjx_agrees_with_mujoco_c() -> None:
-    """Ten decisions into a wall and along it."""
-    paths = []
-    for physics in ("native", "mjx"):
-        env = Sprk(physics, objects=(WALL,))
-        actions = jnp.tile(jnp.array([[0.5, 0.8]]), (10, 1))
-        paths.append(follow(env, at(env, [0.3, 0.6, 0.2, 0.3]), actions))
-    np.testing.assert_allclose(paths[0].obs, paths[1].obs, atol=1e-3)
-    np.testing.assert_array_equal(paths[0].reward, paths[1].reward)
-    assert 3 < paths[0].reward.sum() < 10
+def test_mujoco_measures_the_distance_to_rounded_boxes() -> None:
+    """Distance of the ball to MuJoCo's geoms, outside of them."""
+    env, s = Sprk("native"), np.random.default_rng(0).uniform(0, 1, (40, 2))
+    model = mjcf.load(env.asset)
+    data, ball = mujoco.MjData(model), model.geom("ball").id
+    parts = [i for i in range(model.ngeom) if model.geom(i).name.startswith("object")]
+    assert len(parts) == model.npair == 13
+    for data.qpos[:], want in zip(s, many(env, "distance")(jnp.asarray(s)), strict=True):
+        mujoco.mj_kinematics(model, data)
+        got = min(mujoco.mj_geomDistance(model, data, ball, i, 9.0, None) for i in parts)
+        if want > env.radius:
+            assert got + env.radius == pytest.approx(float(want), abs=1e-5)
 
 
-@pytest.mark.parametrize("experiment", ["fig_5_2", "fig_5_4", "fig_5_6", "fig_5_7"])
-def test_experiments_of_the_contact_plane_run_on_it(experiment) -> None:
-    """With the same objects, box and pose."""
-    plane, ball = (
-        instantiate(config.load([f"experiment=thesis/{experiment}", *more]).env, _convert_="all")
-        for more in ([], ["task=sprk"])
-    )
-    assert isinstance(ball, Sprk)
+def test_a_ball_takes_the_objects_of_the_contact_plane() -> None:
+    """As its experiments give them: with the same values it has the same box and pose."""
+    fields = {"objects": (DISC,), "theta": POSE, "spread": (0.1, 0.1, 3.0), "drag": 0.3}
+    plane, ball = ContactPlane(**fields), Sprk("native", **fields)
     for name in ("objects", "low", "high", "drag", "theta", "spread", "false_contact"):
         assert getattr(ball, name) == getattr(plane, name)
-
-
-@pytest.mark.parametrize(
-    ("fields", "words"),
-    [
-        ({"sensor": "sonar"}, "sensor=sonar: choose one of touch, accelerometer"),
-        ({"lag": -1.0}, "lag=-1.0: must be 0 or more"),
-        ({"mass": 0.0}, "mass=0.0: must be above 0"),
-        ({"low": (1.0, 0.0)}, "low="),
-    ],
-)
-def test_bad_fields_are_refused(fields, words) -> None:
-    with pytest.raises(ValueError, match=words):
-        Sprk(**fields)

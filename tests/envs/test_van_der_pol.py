@@ -50,8 +50,3 @@ def test_the_reward_weighs_state_and_control() -> None:
     assert after.reward == pytest.approx(-(np.sum(np.square(after.obs)) + 0.1 * 2.0**2), abs=1e-5)
     clipped = ENV.step(state, jnp.array([3.0]))
     np.testing.assert_array_equal(clipped.obs, ENV.step(state, jnp.array([1.0])).obs)
-
-
-def test_the_start_must_be_positive() -> None:
-    with pytest.raises(ValueError, match=r"start=0: must be above 0"):
-        VanDerPol(start=0)

@@ -1,10 +1,12 @@
 """Properties of every environment in every implementation."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
+from types import NoneType
+from typing import Literal, get_args, get_origin
 
 import jax
-import mujoco
+import jax.numpy as jnp
 import numpy as np
 import pytest
 from worlds import (
@@ -12,42 +14,41 @@ from worlds import (
     ARMS,
     BROKEN,
     DECISIONS,
-    EULER,
+    FROM_OTHERS,
     IMPLEMENTATIONS,
     OTHER,
+    OWN_TEST,
     SIMULATED,
-    STATE,
     TASKS,
     TOUCHING,
     jitted,
     make,
     rollout,
+    shown,
+    start,
+    step_grid,
     task_of,
 )
 
 from hybrid_rl.envs.mujoco import mjcf, scenery
-from hybrid_rl.settings.groups import options
+from hybrid_rl.fields import Must, choices, plain
 
 pytestmark = pytest.mark.xdist_group("worlds")  # both read `rollout`
 
 CASES = [
-    *((t, i) for t in SIMULATED for i in IMPLEMENTATIONS),
-    *((t, "analytic") for t in ANALYTIC),
+    *((task, each) for task in SIMULATED for each in IMPLEMENTATIONS),
+    *((task, "analytic") for task in ANALYTIC),
 ]
-
-
-FROM_OTHERS = {"gymnasium", "playground", "robot", "online"}  # tests of their own
-OWN_TEST = {"sawyer_probe"}  # test_sawyer_probe.py
+STATE = {"two_link": 4, "sprk_sand": 4, "sawyer_torque": 14}  # entries before a reference
+LATE = ("lander",)  # an action moves velocities now, and positions one decision later
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "tasks.md"
 
 
-def test_every_task_is_tested_here_and_has_its_row_on_the_page():
-    tasks = set(options("task")) - FROM_OTHERS
-    assert tasks == TASKS.keys() | OWN_TEST
+def test_every_task_has_its_row_on_the_page():
     table = PAGE.read_text(encoding="utf-8").partition("|---|---|---|\n")[2].partition("\n\n")[0]
-    assert tasks == {
-        name for row in table.splitlines() for name in row.split("|")[1].split("`")[1::2]
-    }
+    rows = [row.split("|")[1].split("`")[1::2] for row in table.splitlines()]
+    assert TASKS.keys() | OWN_TEST == {name for names in rows for name in names}
+    assert not FROM_OTHERS & TASKS.keys()
 
 
 @pytest.fixture(params=CASES, ids="-".join)
@@ -55,70 +56,86 @@ def env(request):
     return make(*request.param)
 
 
-def test_shapes_and_types(env):
-    path = rollout(env)
-    lead = (2, 2, DECISIONS)
+def test_states_have_their_shapes_and_are_finite_and_never_truncated(env):
+    path, lead = rollout(env), (2, 2, DECISIONS)
     assert path.obs.shape == (*lead, env.spec.obs)
     assert path.obs.dtype == path.reward.dtype == np.float32
     assert path.reward.shape == path.terminated.shape == path.truncated.shape == lead
     assert path.terminated.dtype == path.truncated.dtype == bool
+    assert not path.truncated.any()
+    assert all(np.isfinite(leaf[TOUCHING]).all() for leaf in jax.tree.leaves(path))
+    assert (np.abs(path.obs[TOUCHING][-1] - path.obs[TOUCHING][0]) > 1e-3).any()
 
 
-def test_finite_and_never_truncated(env):
+def test_lanes_are_equal_by_start_and_nan_stays_in_its_own(env):
     path = rollout(env)
     for leaf in jax.tree.leaves(path):
-        assert np.isfinite(leaf[TOUCHING]).all()
-    assert not path.truncated.any()
+        np.testing.assert_array_equal(leaf[TOUCHING], leaf[OTHER])
+    late = 5 + (task_of(env) in LATE)
+    assert np.isfinite(path.obs[BROKEN][:5]).all()
+    assert np.isnan(path.obs[BROKEN][late:, : STATE.get(task_of(env))]).all()
+    assert np.isnan(path.reward[BROKEN][5:]).all()
+
+
+def test_it_is_equal_by_value_and_its_pose_is_one_of_its_scene(env):
+    again = replace(env)
+    assert (env, hash(env)) == (again, hash(again))
+    model = mjcf.load(scenery.scene_of(env))
+    pose = jax.eval_shape(lambda key: env.pose(env.reset(key)), jax.random.key(0))
+    assert pose.shape == (model.nq,)
+    assert model.camera("track").id >= 0
 
 
 @pytest.mark.parametrize("task", ["ant", "humanoid", "quadcopter", *ARMS, "sawyer_torque"])
 def test_finite_for_long(task):
     """Random decisions beyond the end of episodes."""
-    env = TASKS[task](physics="native")
-
-    def one(state, key):
-        action = jax.random.uniform(key, (4, env.spec.act), minval=-1, maxval=1)
-        state = jax.vmap(env.step)(state, action)
-        return state, (state.obs, state.reward)
-
-    key, *keys = jax.random.split(jax.random.key(0), 5)
-    state = jax.jit(jax.vmap(env.reset))(jax.numpy.stack(keys))
-    _, path = jax.jit(lambda s: jax.lax.scan(one, s, jax.random.split(key, 200)))(state)
-    assert all(np.isfinite(leaf).all() for leaf in path)
+    env, rng = make(task), np.random.default_rng(0)
+    state = start(env)
+    for _ in range(200):
+        action = rng.uniform(-1, 1, (2, 2, env.spec.act)).astype(np.float32)
+        state = step_grid(env)(state, jnp.asarray(action))
+        assert np.isfinite(state.obs).all()
+        assert np.isfinite(state.reward).all()
 
 
-def test_it_moves(env):
-    obs = np.asarray(rollout(env).obs[TOUCHING])
-    assert (np.abs(obs[-1] - obs[0]) > 1e-3).any()
+@pytest.mark.parametrize("task", TASKS)
+def test_resets_differ_by_key_and_repeat(task):
+    reset = jitted(make(task), "reset")
+    first, again, other = (reset(jax.random.key(k)).obs for k in (1, 1, 2))
+    np.testing.assert_array_equal(first, again)
+    assert (np.asarray(first) != np.asarray(other)).any()
 
 
-def test_same_start_same_path(env):
-    path = rollout(env)
-    for leaf in jax.tree.leaves(path):
-        np.testing.assert_array_equal(leaf[TOUCHING], leaf[OTHER])
+VARIANTS = [  # beside the defaults
+    ("quadcopter_se3", {"drag": False}),
+    ("quadcopter_se3", {"turn": 1.0, "terminate": False}),
+    ("lander", {"task": "hover"}),
+]
+EUCLIDEAN = [
+    make(task, **given)
+    for task, given in [*((task, {}) for task in ANALYTIC), *VARIANTS]
+    if hasattr(TASKS[task], "from_local")
+]
 
 
-def test_nan_propagates_within_its_lane_only(env):
-    path = rollout(env)
-    obs, reward = np.asarray(path.obs), np.asarray(path.reward)
-    assert np.isfinite(obs[BROKEN][:5]).all()
-    late = 5 + (task_of(env) in EULER)
-    assert np.isnan(obs[BROKEN][late:, : STATE.get(task_of(env))]).all()
-    assert np.isnan(reward[BROKEN][5:]).all()
-    assert np.isfinite(obs[OTHER]).all()
-
-
-def test_equal_by_value(env):
-    again = replace(env)
-    assert env == again
-    assert hash(env) == hash(again)
-
-
-def test_pose_has_the_size_of_the_scene(env):
-    model = mjcf.load(scenery.scene_of(env))
-    pose = jax.eval_shape(lambda key: env.pose(env.reset(key)), jax.random.key(0))
-    assert pose.shape == (model.nq,)
-    assert model.camera("track").id >= 0
+@pytest.mark.parametrize("env", EUCLIDEAN, ids=repr)
+def test_dynamics_rest_at_the_equilibrium_and_are_those_of_a_step(env):
+    """Local coordinates are 0 there, and invert; the reward is that of observations, if known."""
+    with jax.enable_x64(True):
+        x, u = env.equilibrium()
+        np.testing.assert_allclose(jax.jit(env.dynamics)(x, u), x, atol=1e-12)
+        np.testing.assert_array_equal(env.to_local(x), 0)
+        size = env.to_local(x).size
+        e = jnp.asarray(np.random.default_rng(0).uniform(-0.4, 0.4, size))
+        np.testing.assert_allclose(env.to_local(env.from_local(e)), e, atol=1e-12)
+    assert np.abs(u).max() < 1
+    state, u = jitted(env, "reset")(jax.random.key(3)), jnp.linspace(-0.5, 0.7, env.spec.act)
+    after = jitted(env, "step")(state, u)
+    np.testing.assert_allclose(after.obs, jitted(env, "dynamics")(state.obs, u), atol=1e-5)
+    if hasattr(env, "reward_of"):
+        paid = jitted(env, "reward_of")(state.obs, u, after.obs)
+        np.testing.assert_allclose(after.reward, paid, rtol=1e-5)
+        assert float(after.reward) != 0
 
 
 POINTS = {
@@ -128,30 +145,25 @@ POINTS = {
 }
 
 
-def placed(task):
+def pointed(task):
     """States of eight decisions, and where MuJoCo has their points [8, n, 3]."""
-    env = make(task, "native")
+    env = make(task)
     states = [jax.tree.map(lambda a, t=t: a[(*OTHER, t)], rollout(env)) for t in range(8)]
-    model = mjcf.load(scenery.scene_of(env))
-    data, points = mujoco.MjData(model), []
-    for state in states:
-        data.qpos[:] = env.pose(state)
-        mujoco.mj_kinematics(model, data)
-        points.append(np.array(POINTS[task](data)))
-    return env, states[0], np.stack([state.obs for state in states]), np.array(points)
+    points = np.array([POINTS[task](shown(env, state)) for state in states])
+    return env, states[0], np.stack([state.obs for state in states]), points
 
 
 @pytest.mark.parametrize("task", POINTS)
 def test_points_of_observations_are_where_mujoco_has_them(task):
     """From a state and the observations after it."""
-    env, first, obs, want = placed(task)
+    env, first, obs, want = pointed(task)
     near = 2e-3 if task == "sawyer_push" else 1e-5  # the height of its rod is not observed
     np.testing.assert_allclose(env.points(first, obs), want, atol=near)
     assert np.ptp(want[:, 0], axis=0).max() > 0.01
 
 
 def test_points_of_other_observations_of_the_stacked_block():
-    env, first, obs, want = placed("panda_stack")
+    env, first, obs, want = pointed("panda_stack")
     (tool, block), goal = want.swapaxes(0, 1), np.asarray(env._goal(first.data))
     relative = np.concatenate((block - tool, goal - block, obs[:, 6:7]), 1)
     other = replace(env, observation="relative")
@@ -163,26 +175,48 @@ def test_points_of_other_observations_of_the_stacked_block():
 
 
 @pytest.mark.parametrize("task", TASKS)
-def test_resets_differ_by_key_and_repeat(task):
-    env = make(task, "native")
-    first, again, other = (jitted(env, "reset")(jax.random.key(k)).obs for k in (1, 1, 2))
-    np.testing.assert_array_equal(first, again)
-    assert (np.asarray(first) != np.asarray(other)).any()
+def test_a_field_out_of_its_range_is_named(task):
+    """-1 or a word that none of its rules takes, of every field that has rules."""
+    for field in fields(TASKS[task]):
+        kind = next(each for each in choices(field.type) if each is not NoneType)
+        rules = [each for each in get_args(kind)[1:] if isinstance(each, Must)]
+        if rules and plain(kind) in (int, float) and not all(rule.hold(-1) for rule in rules):
+            with pytest.raises(ValueError, match=rf"{field.name}=-1"):
+                TASKS[task](**{field.name: -1})
+        if get_origin(kind) is Literal:
+            with pytest.raises(ValueError, match=rf"{field.name}=fame: choose one of"):
+                TASKS[task](**{field.name: "fame"})
 
 
-@pytest.mark.parametrize("task", SIMULATED)
-def test_unknown_physics_is_named(task):
-    with pytest.raises(ValueError, match=r"physics=bullet.*native, mjx, warp"):
-        make(task, "bullet")
+BOX = (0.5, 0.5, 0, 0.1, 0.1)  # an object of the contact plane without its rounding
 
 
-@pytest.mark.parametrize("task", ["halfcheetah", "hopper", "walker2d", "cartpole"])
-def test_unknown_reward_is_named(task):
-    with pytest.raises(ValueError, match=r"reward=fame: choose one of \w+, \w+"):
-        TASKS[task](reward="fame")
+@pytest.mark.parametrize(
+    ("task", "given", "line"),
+    [
+        ("hopper", {"physics": "bullet"}, r"physics=bullet: .* native, mjx, warp"),
+        ("hopper", {"physics": "warp"}, "physics=warp: must have an NVIDIA GPU"),
+        ("hopper", {"velocity_limit": 0.0}, r"velocity_limit=0.0: must be above 0, or null"),
+        ("halfcheetah", {"motors": [1.0, 1.0]}, r"motors=.*: must be 1 or 6 numbers"),
+        ("quadcopter", {"asset": "x"}, r"asset=x: no model"),
+        ("quadcopter_se3", {"sensor_noise": (0.1, 0.2)}, r"sensor_noise=.*: must be 1 or 18"),
+        ("panda_stack", {"low": (0.0,)}, r"low=\[.*must have 3 entries"),
+        ("lander", {"turns": 0.7}, r"turns=0.7: must be 0.5 or 1.0"),
+        ("contact_plane", {"objects": (BOX,)}, "each is x, y, angle"),
+        ("contact_plane", {"objects": ((*BOX, 0.2),)}, "rounding"),
+        ("contact_plane", {"objects": ((1.5, *BOX[1:], 0.1),)}, "outside of the box"),
+        ("contact_plane", {"objects": ((*BOX[:3], 0.44, 0.44, 0.01),)}, "leave no room to start"),
+        *((task, {"low": (1.0, 0.0)}, "low=") for task in ("contact_plane", "sprk")),
+    ],
+)
+def test_values_that_do_not_fit_are_named(task, given, line):
+    with pytest.raises(ValueError, match=line):
+        TASKS[task](**given)
 
 
-@pytest.mark.parametrize("task", ["halfcheetah", "hopper", "walker2d", "cartpole"])
-def test_warp_without_a_gpu_raises(task):
-    with pytest.raises(ValueError, match=r"physics='warp' needs"):
-        make(task, "warp")
+def test_masses_of_the_cart_pendulum_are_those_of_cartpole():
+    model, env = mjcf.load("cartpole.xml"), make("cart_pendulum")
+    masses = [model.body(name).mass[0] for name in ("cart", "pole")]
+    np.testing.assert_allclose([env.cart_mass, env.rod_mass], masses)
+    assert env.length == pytest.approx(2 * model.geom("pole").size[1])
+    assert env.force == model.actuator("slider").gear[0]

@@ -1,110 +1,64 @@
 """The environments under test, and one compiled program of each, shared by all tests."""
 
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
 import mujoco
 import numpy as np
+from hydra.utils import get_class
+from omegaconf import OmegaConf
 
-from hybrid_rl.envs.analytic.cart_double_pendulum import CartDoublePendulum
-from hybrid_rl.envs.analytic.cart_pendulum import CartPendulum
-from hybrid_rl.envs.analytic.cart_swing_up import CartSwingUp
-from hybrid_rl.envs.analytic.contact_plane import ContactPlane
-from hybrid_rl.envs.analytic.lander import Lander
-from hybrid_rl.envs.analytic.no_dynamics import NoDynamics
-from hybrid_rl.envs.analytic.pendulum import Pendulum
-from hybrid_rl.envs.analytic.point_mass import PointMass
-from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
-from hybrid_rl.envs.analytic.sprk_sand import SprkSand
-from hybrid_rl.envs.analytic.two_link import TwoLink
-from hybrid_rl.envs.analytic.van_der_pol import VanDerPol
-from hybrid_rl.envs.ant import Ant
-from hybrid_rl.envs.cartpole import Cartpole
-from hybrid_rl.envs.halfcheetah import HalfCheetah
-from hybrid_rl.envs.hopper import Hopper
-from hybrid_rl.envs.humanoid import Humanoid
-from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.envs.panda_stack import PandaStack
-from hybrid_rl.envs.quadcopter import Quadcopter
-from hybrid_rl.envs.sawyer_push import TIP, SawyerPush
-from hybrid_rl.envs.sawyer_torque import SawyerTorque
-from hybrid_rl.envs.sprk import Sprk
-from hybrid_rl.envs.walker2d import Walker2d
+from hybrid_rl.envs.mujoco import mjcf, scenery
+from hybrid_rl.envs.sawyer_push import TIP
+from hybrid_rl.settings.groups import file, options
 
 DECISIONS = 20
-STATE = {"two_link": 4, "sprk_sand": 4, "sawyer_torque": 14}  # entries before a reference
-EULER = ("lander",)  # an action moves velocities now, and positions one decision later
-ANALYTIC = {
-    "no_dynamics": NoDynamics,
-    "pendulum": Pendulum,
-    "point_mass": PointMass,
-    "cart_double_pendulum": CartDoublePendulum,
-    "quadcopter_se3": QuadcopterSE3,
-    "van_der_pol": VanDerPol,
-    "cart_pendulum": CartPendulum,
-    "cart_swing_up": CartSwingUp,
-    "two_link": TwoLink,
-    "sprk_sand": SprkSand,
-    "contact_plane": ContactPlane,
-    "lander": Lander,
+FROM_OTHERS = {"gymnasium", "playground", "robot", "online"}  # tests of their own
+OWN_TEST = {"sawyer_probe"}  # test_sawyer_probe.py
+TASKS: dict[str, Any] = {
+    name: get_class(OmegaConf.load(file("task", name)).env._target_)
+    for name in options("task")
+    if name not in FROM_OTHERS | OWN_TEST
 }
-TASKS = {
-    "halfcheetah": HalfCheetah,
-    "hopper": Hopper,
-    "walker2d": Walker2d,
-    "cartpole": Cartpole,
-    "ant": Ant,
-    "humanoid": Humanoid,
-    "quadcopter": Quadcopter,
-    "sawyer_push": SawyerPush,
-    "panda_stack": PandaStack,
-    "sawyer_torque": SawyerTorque,
-    "sprk": Sprk,
-    **ANALYTIC,
-}
+ANALYTIC = tuple(name for name, kind in TASKS.items() if ".analytic." in kind.__module__)
+SIMULATED = tuple(name for name in TASKS if name not in ANALYTIC)
 FIELDS = {
     "ant": {"integrator": "euler"},
     "humanoid": {"integrator": "euler"},
     "quadcopter": {"task": "track", "damping": True},
     "panda_stack": {"grip": "action"},
 }
-SIMULATED = tuple(task for task in TASKS if task not in ANALYTIC)
 ARMS = ("sawyer_push", "panda_stack")  # controls depend on states
 COMPUTED = (*ARMS, "quadcopter", "humanoid")  # controls are not the actions
 TOUCHING, LIFTED, OTHER, BROKEN = (0, 0), (0, 1), (1, 0), (1, 1)  # lanes [seed, env]
 IMPLEMENTATIONS = ("native", "mjx")
 
 
-class Reference(NamedTuple):
-    """How MuJoCo C simulates a task."""
+class Touching(NamedTuple):
+    """A robot that touches something, unless it is lifted."""
 
-    asset: str
-    steps: int  # per decision
-    heights: tuple[int, ...] = ()  # indices in qpos that the lifted lane raises
+    geoms: tuple[str, ...]  # that touch each other
+    heights: tuple[int, ...]  # indices in qpos that the lifted lane raises
     lift: float = 10.0  # [m]; more for longer decisions
 
 
-REFERENCE = {
-    "halfcheetah": Reference("halfcheetah.xml", 5, (1,)),
-    "hopper": Reference("hopper.xml", 4, (1,)),
-    "walker2d": Reference("walker2d.xml", 4, (1,)),
-    "cartpole": Reference("cartpole.xml", 1),
-    "ant": Reference("ant_euler.xml", 5, (2,)),
-    "humanoid": Reference("humanoid_euler.xml", 5, (2,)),
-    "quadcopter": Reference("quadcopter.xml", 1),
-    "sawyer_push": Reference("sawyer_push.xml", 20, (9,), 30.0),
-    "panda_stack": Reference("panda_stack.xml", 20, (11, 18), 30.0),
-    "sawyer_torque": Reference("sawyer_torque.xml", 5),
-    "sprk": Reference(Sprk().asset, 30),
+TOUCH = {
+    "halfcheetah": Touching(("floor",), (1,)),
+    "hopper": Touching(("floor",), (1,)),
+    "walker2d": Touching(("floor",), (1,)),
+    "ant": Touching(("floor",), (2,)),
+    "humanoid": Touching(("floor",), (2,)),
+    "sawyer_push": Touching(("rod", "cube"), (9,), 30.0),
+    "panda_stack": Touching(("left_pad", "block"), (11, 18), 30.0),
 }
 
 
-def make(task, implementation="analytic"):
+def make(task, /, implementation="native", **fields):
     """The environment of a task; its physics, for those that MuJoCo simulates."""
-    physics = {} if task in ANALYTIC else {"physics": implementation}
-    return TASKS[task](**physics, **FIELDS.get(task, {}))
+    physics = {"physics": implementation} if task in SIMULATED else {}
+    return TASKS[task](**physics, **FIELDS.get(task, {}) | fields)
 
 
 def task_of(env):
@@ -142,10 +96,9 @@ def observe(task, data, state):
 def actions(env):
     """[2, 2, DECISIONS, m], the same for all lanes; NaN in lane BROKEN from decision 5 on."""
     one = np.random.default_rng(0).uniform(-1, 1, (DECISIONS, env.spec.act))
-    if isinstance(env, SawyerPush):
-        one[:, 0] = np.abs(one[:, 0])  # the rod moves forward, to the block
-    if isinstance(env, PandaStack):
-        one[:, 3] = np.abs(one[:, 3])  # the hand holds the block
+    if task_of(env) in ARMS:
+        forward_or_held = {"sawyer_push": 0, "panda_stack": 3}[task_of(env)]
+        one[:, forward_or_held] = np.abs(one[:, forward_or_held])
     every = np.tile(one, (2, 2, 1, 1)).astype(np.float32)
     every[BROKEN][5:] = np.nan
     return jnp.asarray(every)
@@ -153,7 +106,7 @@ def actions(env):
 
 @cache
 def _first(task):
-    return jax.jit(make(task, "native").reset)(jax.random.key(7))
+    return jax.jit(make(task).reset)(jax.random.key(7))
 
 
 def start(env):
@@ -161,20 +114,21 @@ def start(env):
 
     Sawyer's block is in front of the rod, Panda's between the fingers.
     """
-    first = _first(task_of(env))
-    qpos = first.data.qpos if task_of(env) in SIMULATED else None
-    if isinstance(env, SawyerPush):
+    task = task_of(env)
+    first = _first(task)
+    qpos = first.data.qpos if task in SIMULATED else None
+    if task == "sawyer_push":
         tip = TIP.pose(qpos)[0]
         qpos = qpos.at[7:9].set(tip[:2] + jnp.array([0.04, 0.0])).at[10:].set(jnp.eye(4)[0])
-    if isinstance(env, PandaStack):
+    if task == "panda_stack":
         held = jnp.concatenate([jnp.full(2, 0.025), first.obs[:3], jnp.eye(4)[0]])
         qpos = qpos.at[7:16].set(held)
     if qpos is not None:
         first = first.replace(data=first.data.replace(qpos=qpos))
     state = jax.tree.map(lambda a: jnp.tile(a, (2, 2) + (1,) * a.ndim), first)
-    if qpos is not None:
-        _, _, heights, lift = REFERENCE[task_of(env)]
-        lifted = state.data.qpos.at[(*LIFTED, jnp.array(heights, int))].add(lift)
+    if task in TOUCH:
+        _, heights, lift = TOUCH[task]
+        lifted = state.data.qpos.at[(*LIFTED, jnp.array(heights))].add(lift)
         state = state.replace(data=state.data.replace(qpos=lifted))
     return state
 
@@ -192,6 +146,22 @@ def jitted(env, method):
 
 
 @cache
+def many(env, method):
+    """A method of `env` for a batch, compiled once for all tests."""
+    return jax.jit(jax.vmap(getattr(env, method)))
+
+
+@cache
+def _scanned(env):
+    return jax.jit(lambda state, u: jax.lax.scan(lambda s, u: (env.step(s, u),) * 2, state, u)[1])
+
+
+def along(env, state, actions):
+    """The states [T] after each of actions [T, m], from `state`."""
+    return _scanned(env)(state, jnp.asarray(actions, jnp.float32))
+
+
+@cache
 def rollout(env):
     """EnvState [2, 2, DECISIONS] from `start` with `actions`."""
     state, path = start(env), []
@@ -201,14 +171,40 @@ def rollout(env):
     return jax.tree.map(lambda *leaves: np.stack(leaves, 2), *path)
 
 
+@cache
+def _followed(env):
+    return jax.jit(lambda x, u: jax.lax.scan(lambda x, u: (env.dynamics(x, u),) * 2, x, u)[1])
+
+
 def follow(env, x, actions) -> np.ndarray:
     """States [T+1, o] of the dynamics from x [o] under actions [T, m], in float64."""
     with jax.enable_x64(True):
-        run = jax.jit(
-            lambda x, u: jax.lax.scan(lambda x, u: (env.dynamics(x, u),) * 2, x, u)[1],
-        )
         x = jnp.asarray(x, jnp.float64)
-        return np.concatenate([x[None], run(x, jnp.asarray(actions))])
+        return np.concatenate([x[None], _followed(env)(x, jnp.asarray(actions, jnp.float64))])
+
+
+def placed(asset, qpos, qvel=0.0):
+    """MuJoCo's own model and data at qpos [nq] and qvel [nv]; qpos may be its first entries."""
+    model = mjcf.load(asset)
+    data = mujoco.MjData(model)
+    data.qpos[: len(qpos)], data.qvel[:] = qpos, qvel
+    mujoco.mj_forward(model, data)
+    return model, data
+
+
+def simulated(asset, qpos, qvel, forces, steps) -> tuple[np.ndarray, np.ndarray]:
+    """Joint positions and velocities [T, nv] of MuJoCo C under generalised forces [T, nv]."""
+    (model, data), path = placed(asset, qpos, qvel), []
+    for data.qfrc_applied[:] in forces:
+        mujoco.mj_step(model, data, steps)
+        path.append((data.qpos.copy(), data.qvel.copy()))
+    positions, velocities = zip(*path, strict=True)
+    return np.array(positions), np.array(velocities)
+
+
+def shown(env, state):
+    """MuJoCo's data of the scene in which a state is drawn."""
+    return placed(scenery.scene_of(env), scenery.pose_of(env)(state))[1]
 
 
 def reference(task, implementation, lane):
@@ -217,8 +213,9 @@ def reference(task, implementation, lane):
     Controls are the actions, or those that the environment computed from them.
     """
     env = make(task, implementation)
-    asset, steps, *_ = REFERENCE[task]
-    model, state, path = mjcf.load(asset), start(env), rollout(env)
+    state, path = start(env), rollout(env)
+    model = mjcf.load(state.data.asset)
+    steps = round(env.spec.dt / model.opt.timestep)
     data = mujoco.MjData(model)
     data.qpos[:], data.qvel[:] = state.data.qpos[lane], state.data.qvel[lane]
     controls = path.data.ctrl if task in COMPUTED else actions(env)

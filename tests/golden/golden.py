@@ -128,25 +128,22 @@ def _outcome(overrides: list[str]) -> dict[str, Any]:
     return {"metrics": means, "learned": learned, "actions": actions}
 
 
-def moved(before: Any, after: Any, where: str = "") -> list[str]:
+def values(tree: Any) -> dict[str, Any]:
+    """Path -> value of all leaves of an outcome."""
+    leaves = jax.tree_util.tree_leaves_with_path(tree, is_leaf=lambda node: node is None)
+    return {jax.tree_util.keystr(path): value for path, value in leaves}
+
+
+def moved(before: Any, after: Any) -> list[str]:
     """The differences between two outcomes, a line each."""
-    if isinstance(before, dict):
-        lines = [f"{where}{key}: gone" for key in before.keys() - after.keys()]
-        lines += [f"{where}{key}: new" for key in after.keys() - before.keys()]
-        for key in before.keys() & after.keys():
-            lines += moved(before[key], after[key], f"{where}{key} ")
-        return sorted(lines)
-    if before == after:
-        return []
-    numbers = [
-        v[-1] if isinstance(v, list) and isinstance(v[0], str) else v for v in (before, after)
-    ]
-    try:
-        a, b = (np.asarray(each, float) for each in numbers)
-        apart = float(np.max(np.abs(a - b) / np.maximum(np.abs(a), 1e-12)))
-        return [f"{where}: {before} -> {after} (relative {apart:.1e})"]
-    except (TypeError, ValueError):
-        return [f"{where}: {before} -> {after}"]
+    old, new = values(before), values(after)
+    lines = [f"{key}: {'gone' if key in old else 'new'}" for key in old.keys() ^ new.keys()]
+    for key in old.keys() & new.keys():
+        if (a := old[key]) != (b := new[key]):
+            known = isinstance(a, float) and isinstance(b, float)
+            apart = f" (relative {abs(a - b) / max(abs(a), 1e-12):.1e})" if known else ""
+            lines.append(f"{key}: {a} -> {b}{apart}")
+    return sorted(lines)
 
 
 def main() -> None:

@@ -1,6 +1,5 @@
 """Learned features: a linear world, the trivial solution, gradients, the regression, windows."""
 
-from dataclasses import replace
 from typing import Any
 
 import jax
@@ -107,31 +106,6 @@ def test_without_the_state_in_z_the_loss_falls_with_the_norm_of_z(fit):
     assert lengths[False] < 0.1 < 0.5 < lengths[True]
 
 
-def test_gradients_of_the_loss_equal_finite_differences():
-    with jax.enable_x64(True):
-        decisions = jax.tree.map(lambda x: jnp.asarray(x, jnp.float64), linear_world(60))
-        learner = EmbeddingLearner(Koopman(Network(size=3, hidden=(5,))), window=4)
-        key = jax.random.key(2)
-        model = jax.tree.map(
-            lambda x: x.astype(float) + 0.1 * jax.random.normal(key, x.shape, float),
-            learner.model.init(key, SPEC),
-        )
-        part = windows(decisions, 4)
-        flat, unravel = jax.flatten_util.ravel_pytree(
-            {"K": model["K"], "features": model["features"]}
-        )
-
-        def loss(flat: Any) -> Any:
-            return learner.loss({**model, **unravel(flat)}, part)
-
-        gradient = jax.jit(jax.grad(loss))(flat)
-        directions = np.random.default_rng(3).normal(size=(10, flat.size))
-        value = jax.jit(loss)
-        for d in directions:
-            slope = (value(flat + 1e-5 * d) - value(flat - 1e-5 * d)) / 2e-5
-            assert slope == pytest.approx(float(gradient @ d), rel=1e-6, abs=1e-9)
-
-
 @pytest.mark.parametrize("capacity", [1000, 300])
 def test_the_operator_is_the_ridge_regression_of_the_decisions_in_the_memory(capacity):
     decisions = linear_world(200, worlds=2)
@@ -201,18 +175,3 @@ def test_features_operator_and_gain_change_together_at_the_end_of_an_iteration()
     assert all(np.array_equal(a, b) for a, b in zip(first, same, strict=True))
     assert not any(np.array_equal(a, b) for a, b in zip(before, first, strict=True))
     assert not any(np.array_equal(a, b) for a, b in zip(same, second, strict=True))
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"fit": "sgd"}, "fit=sgd: choose one of least_squares, adam"),
-        ({"fit": "adam", "steps": 0}, "steps=0: must be a whole number, 1 or more"),
-        ({"interval": 4}, "interval=4: must be a whole number, 5 or more"),
-        ({"capacity": 100}, "capacity=100: must be a whole number, 200 or more"),
-        ({"prior": 0.0}, "prior=0.0: must be above 0"),
-    ],
-)
-def test_bad_fields_are_named(change, message):
-    with pytest.raises(ValueError, match=message):
-        replace(EmbeddingLearner(Koopman(Monomials())), **change)

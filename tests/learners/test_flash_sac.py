@@ -1,7 +1,5 @@
 """The learner of flash_sac and its parts, on problems with known values."""
 
-import math
-
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -12,9 +10,6 @@ from scipy.stats import norm
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.critics.categorical_q import CategoricalQ
 from hybrid_rl.learners.flash_sac import FlashSAC
-from hybrid_rl.learners.return_scale import ReturnScale
-from hybrid_rl.networks import normalised
-from hybrid_rl.networks.normalised import NormalisedNet
 from hybrid_rl.policies.unit_gaussian import UnitGaussian
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -111,71 +106,6 @@ def test_a_time_limit_is_bootstrapped_through(train) -> None:
     np.testing.assert_allclose(q, [expected, expected], atol=0.4)
 
 
-def test_the_target_is_the_projection_of_bellemare_et_al() -> None:
-    """Against their Algorithm 1, written as loops; its mean is the Bellman target."""
-    critic = CategoricalQ(hidden=(8,), bins=11, bound=2.0)
-    rng = np.random.default_rng(0)
-    p = rng.dirichlet(np.ones(11), size=(2, 4))
-    reward, factor = np.array([0.1, -0.3, 0.0, 9.0]), np.array([0.9, 0.5, 0.0, 0.9])
-    penalty = np.array([0.05, -0.1, 0.3, 0.0])
-    z = np.linspace(-2, 2, 11)
-    expected = np.zeros((4, 11))
-    for i in range(4):
-        least = min(range(2), key=lambda k: p[k, i] @ z)
-        for k in range(11):
-            y = min(max(reward[i] + factor[i] * (z[k] - penalty[i]), -2), 2)
-            at = (y + 2) / 0.4
-            low, high = math.floor(at + 1e-9), math.ceil(at - 1e-9)
-            expected[i, low] += p[least, i, k] * (high - at if high > low else 1)
-            expected[i, high] += p[least, i, k] * (at - low) if high > low else 0
-    made = jax.jit(critic.target)(jnp.log(p), *map(jnp.float32, (reward, factor, penalty)))
-    np.testing.assert_allclose(made, expected, atol=2e-5)
-    mean = reward + factor * ((p @ z).min(0) - penalty)
-    np.testing.assert_allclose((np.asarray(made) @ z)[:3], mean[:3], atol=1e-4)  # not clipped
-
-
-def test_in_a_batch_the_network_is_normalised_by_it() -> None:
-    """Written again in NumPy; the running statistics move by a hundredth of the way."""
-    net = NormalisedNet(width=4, blocks=1, out=3)
-    params = jax.jit(lambda key: normalised.init(net, key, 2))(jax.random.key(0))
-    x = np.random.default_rng(1).normal(3, 2, (16, 2))
-    kernels = [np.asarray(params["weights"][f"Dense_{i}"]["kernel"], float) for i in range(3)]
-
-    def normal(v):
-        return (v - v.mean(0)) / np.sqrt(v.var(0) + 1e-5)
-
-    h = normal(x) @ kernels[0]
-    h = h + np.maximum(normal(np.maximum(normal(h @ kernels[1]), 0) @ kernels[2]), 0)
-    h = h / np.sqrt((h**2).mean(1, keepdims=True) + 1e-6)
-    expected = h @ np.asarray(params["weights"]["head"]["kernel"], float)
-    y, after = jax.jit(normalised.apply_in_batch, static_argnums=0)(net, params, jnp.float32(x))
-    np.testing.assert_allclose(y, expected, atol=1e-4)
-    first = after["statistics"]["BatchNorm_0"]
-    np.testing.assert_allclose(first["mean"], 0.01 * x.mean(0), rtol=1e-4)
-    np.testing.assert_allclose(first["var"], 0.99 + 0.01 * x.var(0), rtol=1e-4)
-
-
-def test_the_scale_is_that_of_the_discounted_returns() -> None:
-    """Of two environments; episodes end at times of their own."""
-    rng, count = np.random.default_rng(0), 40
-    reward = rng.normal(1, 2, (count, 2))
-    terminated, truncated = rng.random((2, count, 2)) < 0.1
-    scale = ReturnScale(discount=0.9, bound=5.0, num_envs=2)
-    state, returns = scale.init(jax.random.key(0), SPEC), []
-    assert float(scale.params(state)["scale"]) == 1
-    blank, step = jnp.zeros((2, 1)), jax.jit(scale.update)
-    running = np.zeros(2)
-    for i in range(count):
-        flags = (jnp.float32(terminated[i]), jnp.float32(truncated[i]))
-        new = Batch(blank, blank, jnp.float32(reward[i]), *flags, blank)
-        state, _ = step(state, Params(), new, jax.random.key(i))
-        running = reward[i] + 0.9 * running
-        returns.append(running)
-        running = np.where(terminated[i] | truncated[i], 0, running)
-    expected = max(np.std(returns), np.abs(returns).max() / 5)
-    assert float(scale.params(state)["scale"]) == pytest.approx(expected, rel=1e-4)
-
-
 def test_noise_is_held_for_lengths_with_a_zeta_distribution() -> None:
     """Shares of the lengths 1 to 4 are those of 1, 1/4, 1/9, 1/16; the mean ends exploration."""
     policy = UnitGaussian(hidden=(4,))
@@ -195,25 +125,3 @@ def test_noise_is_held_for_lengths_with_a_zeta_distribution() -> None:
     np.testing.assert_allclose(shares, expected / expected.sum(), atol=0.03)
     assert actor.greedy().init(SPEC) == ()
     assert PolicyController(policy).init(SPEC) == ()
-
-
-@pytest.mark.parametrize(
-    ("make", "field"),
-    [
-        (lambda: learner(discount=1.0), "discount=1.0"),
-        (lambda: learner(tau=0.0), "tau=0.0"),
-        (lambda: learner(target_sigma=0.0), "target_sigma=0.0"),
-        (lambda: learner(batches=0), "batches=0"),
-        (lambda: CategoricalQ(hidden=(8, 16)), r"hidden=\[8, 16\]"),
-        (lambda: CategoricalQ(bins=1), "bins=1"),
-        (lambda: CategoricalQ(bound=0.0), "bound=0.0"),
-        (lambda: UnitGaussian(hidden=()), r"hidden=\[\]"),
-        (lambda: UnitGaussian(log_std_min=3.0), "log_std_min=3.0"),
-        (lambda: ReturnScale(bound=-1.0), "bound=-1.0"),
-        (lambda: PolicyController(UnitGaussian(), hold=0), "hold=0"),
-    ],
-)
-def test_bad_fields(make, field) -> None:
-    """One line that names the field."""
-    with pytest.raises(ValueError, match=field):
-        make()

@@ -9,6 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from jax import Array
+from toys import begun, learned
 
 from hybrid_rl.core import adjoint, soft_return
 from hybrid_rl.critics.ensemble_q import EnsembleQ
@@ -31,7 +32,6 @@ class Line:
     noise: float = 0.1
 
     def draw(self, params: Any, x: Array, u: Array, noise: Array, key: Array) -> Array:
-        """A x + B u and noise."""
         return x @ A.T + u @ B.T + self.noise * noise
 
     def outcome(self, params: Any, x: Array, u: Array, after: Array) -> tuple[Array, Array]:
@@ -39,11 +39,9 @@ class Line:
         return -(x @ x) - 0.1 * u @ u, x[0] - 2
 
     def sample(self, params: Any, x: Array, noise: Array) -> tuple[Array, Array]:
-        """K x and noise."""
         return x @ params.T + 0.3 * noise, -0.5 * jnp.sum(noise**2, -1) + x[..., 0]
 
     def value(self, params: Any, x: Array, u: Array) -> Array:
-        """Q."""
         return -2 * jnp.sum(x**2, -1) - 0.5 * jnp.sum(u**2, -1)
 
 
@@ -139,8 +137,8 @@ def test_the_critic_s_error_counts_where_it_is_reached_and_its_goal_is_the_targe
     policy, critic, spec = TanhGaussian((8,)), EnsembleQ((8,)), Spec(obs=2, act=1, dt=1.0)
     given = {"steps": 3, "value_steps": 2, "discount": DISCOUNT, "alpha": ALPHA}
     learner = ModelBased(policy, critic, PART, PART, branch_steps=0, **given)
-    first = learner.init(jax.random.key(3), spec).learner
-    first = first.replace(target=critic.init(jax.random.key(4), spec))
+    first = begun(learner, spec, 3).learner
+    first = first.replace(target=begun(critic, spec, 4))
 
     @jax.jit
     def made(state: Any) -> tuple:
@@ -178,7 +176,6 @@ def test_without_imagined_decisions_it_is_soft_actor_critic() -> None:
 
     class Quiet(TanhGaussian):
         def sample(self, params: Any, x: Array, noise: Array) -> tuple[Array, Array]:
-            """The same noise always."""
             return super().sample(params, x, jnp.full(noise.shape, 0.4))
 
     parts, spec = (Quiet((8,)), EnsembleQ((8,))), Spec(obs=2, act=1, dt=1.0)
@@ -188,7 +185,7 @@ def test_without_imagined_decisions_it_is_soft_actor_critic() -> None:
 
     @jax.jit
     def updated() -> tuple:
-        first = sac.init(jax.random.key(0), spec)
+        first = begun(sac, spec)
         by_sac = sac.update(first, Params(), batch, KEY)
         by_ours = ours.update(ModelBasedState(first, None), Params(), batch, KEY)
         return (by_ours[0].learner, by_ours[1]), by_sac
@@ -204,7 +201,6 @@ class Staying:
     chance: float
 
     def draw(self, params: Any, x: Array, u: Array, noise: Array, key: Array) -> Array:
-        """The state itself."""
         return x
 
     def outcome(self, params: Any, x: Array, u: Array, after: Array) -> tuple[Array, Array]:
@@ -233,29 +229,7 @@ def test_the_critic_learns_the_imagined_returns(
     )
     zero = jnp.zeros(64)
     seen = Batch(zero[:, None], zero[:, None], zero - 7, zero, zero, zero[:, None])
-
-    def one(state: Any, key: Array) -> tuple[Any, None]:
-        params = Params(**learner.params(state))
-        return learner.update(state, params, seen, key)[0], None
-
-    first = learner.init(jax.random.key(0), Spec(obs=1, act=1, dt=1.0))
-    keys = jax.random.split(jax.random.key(1), 1000)
-    state = jax.jit(lambda first: jax.lax.scan(one, first, keys)[0])(first)
+    state, _ = learned(learner, Spec(obs=1, act=1, dt=1.0), lambda key: seen, 1000)
     q = critic.value(state.learner.critic, jnp.zeros(1), jnp.zeros(1))
     assert float(q) == pytest.approx(wanted, abs=0.05)
     assert int(state.branches.count) == 1000
-
-
-@pytest.mark.parametrize(
-    ("given", "line"),
-    [
-        ({"steps": -1}, "steps=-1: must be a whole number"),
-        ({"steps": 3, "value_steps": 4}, "value_steps=4: must be a whole number from 0 to steps=3"),
-        ({"branch_memory": 300}, "branch_memory=300: must be 0 or a multiple of the batch, 256"),
-        ({"branch_memory": 0, "branch_margin": 1.0}, "branch_margin=1.0: needs kept branches"),
-    ],
-)
-def test_bad_fields(given: dict, line: str) -> None:
-    """One line that names the field."""
-    with pytest.raises(ValueError, match=line):
-        ModelBased(PART, PART, PART, PART, **given)

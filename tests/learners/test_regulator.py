@@ -26,23 +26,28 @@ def linear_params(A: np.ndarray, B: np.ndarray) -> dict:
     return {"features": {}, "K": jnp.asarray(np.hstack([A, B])), "spread": jnp.eye(r)}
 
 
+def linearised(dynamics, x, u):
+    """Derivatives A and B of dynamics."""
+    return (np.asarray(m) for m in jax.jit(jax.jacobian(dynamics, (0, 1)))(x, u))
+
+
+def lqr(A, B, Q, R):
+    """The gain of SciPy's solution."""
+    P = solve_discrete_are(A, B, Q, R)
+    return np.linalg.solve(R + B.T @ P @ B, B.T @ P @ A)
+
+
 def test_the_regulator_of_a_known_system_is_scipys() -> None:
     """The point mass, in coordinates of the observation: gain, goal and feed-forward."""
     world = PointMass()
     with jax.enable_x64(True):
-        A, B = (
-            np.asarray(m)
-            for m in jax.jit(jax.jacobian(world.dynamics, (0, 1)))(*world.equilibrium())
-        )
-        learner = RegulatorLearner(
-            Koopman(Monomials()), Linear(), world, (3.0, 2.0, 1.0, 1.0), (0.5,), horizon=4096
-        )
+        A, B = linearised(world.dynamics, *world.equilibrium())
+        weights = (3.0, 2.0, 1.0, 1.0), (0.5,)
+        learner = RegulatorLearner(Koopman(Monomials()), Linear(), world, *weights, horizon=4096)
         zero = Linear().init(jax.random.key(0), world.spec)
         zero = jax.tree.map(lambda x: x.astype(float), zero)
         solved = jax.jit(learner.solve)(linear_params(A, B), zero)
-    Q, R = np.diag([3.0, 2.0, 1.0, 1.0]), 0.5 * np.eye(2)
-    P = solve_discrete_are(A, B, Q, R)
-    F = np.linalg.solve(R + B.T @ P @ B, B.T @ P @ A)
+    F = lqr(A, B, np.diag(weights[0]), 0.5 * np.eye(2))
     np.testing.assert_allclose(solved["gain"], F, rtol=1e-6)
     np.testing.assert_allclose(solved["goal"], world.equilibrium()[0])
     np.testing.assert_allclose(solved["hold"], 0, atol=1e-6)
@@ -68,14 +73,11 @@ def test_any_model_with_derivatives_has_a_regulator() -> None:
     learner = RegulatorLearner(Exact(world), Linear(), world, (1.0,), (0.1,), horizon=200)
     state = learner.init(jax.random.key(0), world.spec)
     state, metrics = jax.jit(learner.update)(state, Params(), None, jax.random.key(0))
-    A, B = (
-        np.asarray(m) for m in jax.jit(jax.jacobian(world.dynamics, (0, 1)))(*world.equilibrium())
-    )
-    P = np.zeros((3, 3))
+    A, B = linearised(world.dynamics, *world.equilibrium())
+    P, K = np.eye(3), np.zeros((1, 3))
     for _ in range(200):
         K = np.linalg.solve(0.1 * np.eye(1) + B.T @ P @ B, B.T @ P @ A)
         P = np.eye(3) + A.T @ P @ (A - B @ K)
-    K = np.linalg.solve(0.1 * np.eye(1) + B.T @ P @ B, B.T @ P @ A)
     np.testing.assert_allclose(state.policy["gain"], K, rtol=1e-3, atol=1e-4)
     assert metrics["policy/rejected_solutions"] == 0
 
@@ -132,10 +134,8 @@ def test_a_hovering_quadcopter_has_the_gain_and_the_thrust_of_its_linearisation(
             x = world.dynamics(world.from_local(e), u)
             return model.lift(state.model, x)[jnp.array(moved)]
 
-        A, B = (np.asarray(m) for m in jax.jit(jax.jacobian(reduced, (0, 1)))(jnp.zeros(8), hover))
-    Q = Q[np.ix_(moved, moved)]
-    P = solve_discrete_are(A, B, Q, R)
-    F = np.linalg.solve(R + B.T @ P @ B, B.T @ P @ A)
+        A, B = linearised(reduced, jnp.zeros(8), hover)
+    F = lqr(A, B, Q[np.ix_(moved, moved)], R)
     np.testing.assert_allclose(
         np.asarray(solved["gain"])[:, moved], F, rtol=0.01, atol=0.01 * np.abs(F).max()
     )

@@ -61,13 +61,19 @@ def test_every_member_has_its_own_batch(params) -> None:
         MODEL.loss(params, x[:7], u[:7], after[:7])
 
 
-def test_all_members_draw_equally_many_states(params) -> None:
-    """Each next state is one member's draw with its own noise; the key selects the member."""
-    count = 10
+@pytest.mark.parametrize("elites", [None, 2])
+def test_members_draw_equally_many_states(params, elites: int | None) -> None:
+    """Each next state is one member's draw with its own noise; the key selects the member.
+
+    With `elites` only the members with the least losses draw, here two.
+    """
+    model, count = Ensemble(ONE, members=4, elites=elites), 10
+    if elites:
+        params = model.rank(params, jnp.array([3.0, 1.0, 4.0, 2.0]))
     x, u, noise = (
         jax.random.normal(jax.random.key(i), (count, n)) for i, n in ((1, 3), (2, 2), (3, 3))
     )
-    alone, draw = jax.jit(ONE.draw), jax.jit(MODEL.draw)
+    alone, draw = jax.jit(ONE.draw), jax.jit(model.draw)
     each = np.stack([alone(member(params, i), x, u, noise, None) for i in range(4)])
     members = []
     for seed in range(20):
@@ -75,35 +81,13 @@ def test_all_members_draw_equally_many_states(params) -> None:
         assert got.shape == (count, 3)
         apart = np.abs(each - got).max(-1)  # [4, count]
         assert (apart.min(0) < 1e-5).all()
-        assert np.bincount(apart.argmin(0), minlength=4).max() <= 3  # 10 states over 4 members
+        counts = np.bincount(apart.argmin(0), minlength=4)
+        assert counts.tolist() == [0, 5, 0, 5] if elites else counts.max() <= 3
         members.append(apart.argmin(0))
-    assert all(len(set(each)) == 4 for each in np.transpose(members))
+    assert all(len(set(drawn)) == (elites or 4) for drawn in np.transpose(members))
     std = np.exp(np.asarray(params["weights"]["log_std"][0]))
     mean = alone(member(params, 0), x, u, 0 * noise, None)
     np.testing.assert_allclose(each[0] - mean, std * np.asarray(noise), rtol=1e-3, atol=1e-5)
-
-
-def test_bad_fields() -> None:
-    """One line that names the field."""
-    with pytest.raises(ValueError, match=r"members=0"):
-        Ensemble(ONE, 0)
-    with pytest.raises(ValueError, match=r"elites=5: must be a whole number from 1 to"):
-        Ensemble(ONE, 4, elites=5)
-
-
-def test_elites_alone_draw() -> None:
-    """The members with the least losses, each for half of the states."""
-    model = Ensemble(ONE, members=4, elites=2)
-    params = model.rank(model.init(jax.random.key(0), SPEC), jnp.array([3.0, 1.0, 4.0, 2.0]))
-    x, u, noise = (
-        jax.random.normal(jax.random.key(i), (10, n)) for i, n in ((1, 3), (2, 2), (3, 3))
-    )
-    alone, draw = jax.jit(ONE.draw), jax.jit(model.draw)
-    each = np.stack([alone(member(params, i), x, u, noise, None) for i in range(4)])
-    for seed in range(5):
-        apart = np.abs(each - np.asarray(draw(params, x, u, noise, jax.random.key(seed)))).max(-1)
-        assert (apart.min(0) < 1e-5).all()
-        assert np.bincount(apart.argmin(0), minlength=4).tolist() == [0, 5, 0, 5]
 
 
 def test_losses_of_every_member_on_every_transition(params) -> None:

@@ -5,7 +5,6 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.sawyer_push import SawyerPush
 from hybrid_rl.models.ensemble import Ensemble
 from hybrid_rl.models.gaussian import Gaussian
@@ -67,10 +66,3 @@ def test_the_frame_of_a_straight_block_behind_the_rod_is_the_world(data) -> None
     np.testing.assert_allclose(
         jax.jit(MODEL.loss)(params, x, u, after), jax.jit(INSIDE.loss)(params, x, u, after)
     )
-
-
-def test_a_task_without_headings_raises() -> None:
-    with pytest.raises(ValueError, match="Turned: world=Pendulum: has no heading"):
-        Turned(INSIDE, Pendulum())
-    with pytest.raises(ValueError, match=r"env\.extra=\[\]: must contain turn"):
-        Turned(INSIDE, SawyerPush("native")).world.heading(jnp.zeros(4))

@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 import pytest
 from jax import Array
+from toys import Grid
 
 from hybrid_rl.controllers.refits import RefitsController
 from hybrid_rl.controllers.sampling import SamplingController
@@ -20,30 +21,11 @@ from hybrid_rl.models.world import World
 from hybrid_rl.objectives.predicted_return import PredictedReturn
 from hybrid_rl.rewards.world import WorldReward
 from hybrid_rl.run.saved import Trained
-from hybrid_rl.settings import build as config
 from hybrid_rl.training.contract import needs_world
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import EnvState, Params, Path, Spec
 
 T, K, LAMBDA, GAMMA = 4, 3, 0.5, 0.9
-
-
-@dataclass(frozen=True)
-class Grid:
-    """Candidate k has u = k / K at all times."""
-
-    def init(self, spec: Spec, quantile: Array) -> Array:
-        """The action."""
-        return quantile
-
-    def shaped(self, noise: Array) -> Array:
-        """The noise itself."""
-        return noise
-
-    def __call__(self, params: Params, carry: Array, x: Array, plan: Array, noise: Array) -> tuple:
-        """The constant action; x is the observation."""
-        assert x.shape == (5,)
-        return jnp.full(1, carry), jnp.zeros(()), carry
 
 
 def by_hand(state: EnvState, u: float) -> list[float]:
@@ -148,24 +130,3 @@ def test_refits_plan_on_the_world() -> None:
     assert float(metrics["planner/planned_return"]) == pytest.approx(0 + 1, abs=0.1)
     assert needs_world(StagesController({"only": planner}))
     assert not needs_world(replace(planner, model=cast(Any, Last())))
-
-
-def test_what_the_world_does_not_fit_is_refused() -> None:
-    """One line each: no state of the world, a planner by gradients, fields out of range."""
-    model, last = World(Counter()), cast(Any, Last())
-    with pytest.raises(ValueError, match="model=world: plans from the world's state"):
-        model.start(Params())
-    with pytest.raises(ValueError, match="model=world: needs a planner that samples"):
-        model.step((), jnp.zeros(2), jnp.zeros(1))
-    with pytest.raises(ValueError, match=r"discount=1.1: must lie in \(0, 1\]"):
-        PredictedReturn(WorldReward(), 1.1)
-    with pytest.raises(ValueError, match="give both or neither"):
-        PredictedReturn(WorldReward(), policy=last)
-
-
-def test_a_planner_by_gradients_on_the_simulator_is_refused_before_a_run() -> None:
-    words = "task=cartpole algo=mppi +controller@mine=shooting controllers.full=${mine}"
-    more = ["mine.objective=${objective}", "mine.horizon=2"]
-    composed = config.load([*words.split(), *more])
-    with pytest.raises(UsageError, match=r"^model=world: needs a planner that samples"):
-        config.build(composed)

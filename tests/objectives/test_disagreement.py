@@ -4,6 +4,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from toys import begun
 
 from hybrid_rl.models.ensemble import Ensemble
 from hybrid_rl.models.gaussian import Gaussian
@@ -16,7 +17,7 @@ SPEC = Spec(obs=2, act=1, dt=0.1)
 def test_information_is_that_of_the_members_predictions() -> None:
     """Linear members, so that NumPy predicts their changes."""
     model = Ensemble(Gaussian(hidden=()), 3)
-    params = model.init(jax.random.key(0), SPEC)
+    params = begun(model, SPEC)
     rng = np.random.default_rng(0)
     obs = rng.normal(size=(50, 2)) * [1.0, 5.0]
     change = rng.normal(size=(50, 2)) * [0.1, 2.0]
@@ -34,8 +35,3 @@ def test_information_is_that_of_the_members_predictions() -> None:
     np.testing.assert_allclose(objective.reward_to_go(seen, path), to_go, rtol=1e-4)
     value, _ = objective.prepare(seen, (), path.x[0], path.u[0], jax.random.key(0))
     assert float(value(path)) == pytest.approx(to_go[0], rel=1e-4)
-
-
-def test_a_model_without_members_is_refused() -> None:
-    with pytest.raises(ValueError, match="choose model=ensemble"):
-        Disagreement(Gaussian())

@@ -7,12 +7,11 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from jax import Array
+from toys import begun
 
 from hybrid_rl.core import fisher
-from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.learners.history import ModelHistory
 from hybrid_rl.learners.information import InformationLearner, InformationState
-from hybrid_rl.models.exact import Exact
 from hybrid_rl.models.gaussian import Gaussian
 from hybrid_rl.objectives.fisher import FisherInformation
 from hybrid_rl.types import Batch, Params, Path, Spec
@@ -29,7 +28,7 @@ DECISIONS = jnp.asarray(200)
 
 def observed(model: Gaussian) -> dict[str, Any]:
     """Parameters with statistics of the data."""
-    return model.observe(model.init(jax.random.key(0), SPEC), BATCH.obs, BATCH.next_obs)
+    return model.observe(begun(model, SPEC), BATCH.obs, BATCH.next_obs)
 
 
 def value(objective: FisherInformation, params: Params, seed: int = 0) -> Array:
@@ -74,11 +73,10 @@ def test_the_learner_has_the_information_of_all_decisions() -> None:
     """200 decisions like those of a batch, under the same model."""
     params = observed(LINEAR)
     learner = InformationLearner(LINEAR, sigma=0.2, floor=1e9)
-    state = learner.init(jax.random.key(0), SPEC)
+    state = begun(learner, SPEC)
     for _ in range(3):
-        state, metrics = learner.update(
-            state, Params(model=params, decisions=DECISIONS), BATCH, jax.random.key(0)
-        )
+        known = Params(model=params, decisions=DECISIONS)
+        state, metrics = learner.update(state, known, BATCH, jax.random.key(0))
     expected = 200 * squares(params) / 8 / 0.2**2
     np.testing.assert_allclose(learner.params(state)["information"].total, expected, rtol=1e-5)
     np.testing.assert_allclose(metrics["information/trace"], expected.sum(), rtol=1e-5)
@@ -90,12 +88,8 @@ def test_a_singular_information_is_counted_and_stays_finite() -> None:
     params = observed(LINEAR)
     batch = BATCH._replace(action=jnp.zeros((8, 1)))
     learner = InformationLearner(LINEAR)
-    state, metrics = learner.update(
-        learner.init(jax.random.key(0), SPEC),
-        Params(model=params, decisions=DECISIONS),
-        batch,
-        jax.random.key(0),
-    )
+    known, key = Params(model=params, decisions=DECISIONS), jax.random.key(0)
+    state, metrics = learner.update(learner.init(key, SPEC), known, batch, key)
     assert metrics["information/floored"] == 2
     for name in fisher.CRITERIA:
         objective = FisherInformation(LINEAR, criterion=name)
@@ -116,7 +110,7 @@ def test_copies_are_those_of_their_decisions() -> None:
     """Three copies of models 0 to 3; the ring has dropped the first one."""
     learner = ModelHistory(LINEAR, every=10, copies=3)
     first = observed(LINEAR)
-    state = learner.init(jax.random.key(0), SPEC)
+    state = begun(learner, SPEC)
     assert learner.params(state) == {}
     for i in range(4):
         model = jax.tree.map(lambda x, i=i: 0 * x + i, first)
@@ -124,38 +118,3 @@ def test_copies_are_those_of_their_decisions() -> None:
         assert metrics == {}
     for copies in jax.tree.leaves(state.models):
         np.testing.assert_array_equal(copies.reshape(3, -1)[:, 0], [3, 1, 2])
-
-
-@pytest.mark.parametrize(
-    ("fields", "line"),
-    [
-        ({"criterion": "E"}, "criterion=E: choose one of A_step, A, D, T, full"),
-        ({"sensitivity": "both"}, "sensitivity=both: choose one of step, path"),
-        ({"sigma": 0.0}, "sigma=0.0: must be above 0"),
-        ({"floor": 0.0}, "floor=0.0: must be above 0"),
-        ({"probes": -1}, "probes=-1: must be a whole number, 0 or more"),
-        ({"probes": 4}, "probes=4: only criterion=T is estimated"),
-    ],
-)
-def test_bad_fields_of_the_objective_are_named(fields, line) -> None:
-    with pytest.raises(ValueError, match=line):
-        FisherInformation(LINEAR, **fields)
-
-
-def test_bad_fields_of_the_learners_are_named() -> None:
-    with pytest.raises(ValueError, match=r"floor=-1: must be above 0"):
-        InformationLearner(LINEAR, floor=-1)
-    with pytest.raises(ValueError, match=r"rate=2: must lie in \(0, 1\]"):
-        InformationLearner(LINEAR, rate=2)
-    with pytest.raises(ValueError, match=r"copies=0: must be a whole number, 1 or more"):
-        ModelHistory(LINEAR, copies=0)
-
-
-def test_a_model_without_weights_is_refused() -> None:
-    world: Any = Pendulum()
-    known = Exact(world)
-    line = "information.model=Exact: has no weights whose information could be measured"
-    with pytest.raises(ValueError, match=line):
-        FisherInformation(known).init(SPEC)
-    with pytest.raises(ValueError, match=r"information_learner.model=Exact: has no weights"):
-        InformationLearner(known).init(jax.random.key(0), SPEC)

@@ -23,11 +23,9 @@ class Known:
     """pi = 0.9 and Q = 3 x_0 + u."""
 
     def mean(self, params: Any, x: Array) -> Array:
-        """The mean [1], a constant."""
         return jnp.array([0.9])
 
     def value(self, params: Any, x: Array, u: Array) -> Array:
-        """Q [N]."""
         return 3 * x[:, 0] + u[:, 0]
 
 
@@ -75,9 +73,3 @@ def test_value_equals_a_plain_sum(monkeypatch) -> None:
         q = np.mean([multivariate_normal.pdf(s, centre, 0.2 * np.eye(3)) for centre in at])
         total += np.exp(log_p) * (log_p + np.log(50) - np.log(q))
     assert float(value(path)) == pytest.approx(-total, rel=1e-4)
-
-
-def test_bad_fields_are_refused() -> None:
-    """The error names the field."""
-    with pytest.raises(ValueError, match=r"reach"):
-        UtilityErgodic(None, Known(), Known(), reach=0.0)

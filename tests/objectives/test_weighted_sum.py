@@ -54,17 +54,3 @@ def test_a_weighted_sum_of_sums_over_time_is_one() -> None:
     np.testing.assert_allclose(to_go, Term(1.0).reward_to_go(Params(), PATH))
     with pytest.raises(ValueError, match="needs constant weights"):
         WeightedSum(terms, {"a": 1.0, "b": 1.0}, {"a": 0.9}).reward_to_go(Params(), PATH)
-
-
-@pytest.mark.parametrize(
-    ("weights", "decays", "words"),
-    [
-        ({"a": 1.0}, {}, "has a; needs one for each of a, b"),
-        ({"a": 1.0, "b": 1.0}, {"c": 0.5}, "has c; choose from a, b"),
-        ({"a": 1.0, "b": 1.0}, {"a": 1.5}, r"decays.a=1.5: must lie in \(0, 1\]"),
-    ],
-)
-def test_bad_weights_are_refused(weights, decays, words) -> None:
-    """The error names the field."""
-    with pytest.raises(ValueError, match=words):
-        WeightedSum({"a": Term(1.0), "b": Term(1.0)}, weights, decays)

@@ -13,17 +13,14 @@ import small
 from gymnasium.spaces import Dict, Discrete
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 from hosted import Count, counting
-from tiny import call
 
-from hybrid_rl import export
-from hybrid_rl.cli import command
 from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.data.replay import unpack
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.adapters.gymnasium import GymnasiumEnv
 from hybrid_rl.outside.host_loop import HostEvaluator, HostLoop, seed_of
 from hybrid_rl.outside.loops import loop_of
-from hybrid_rl.run import exported, saved
+from hybrid_rl.run import exported
 from hybrid_rl.run.saved import Trained
 from hybrid_rl.settings import build as config
 from hybrid_rl.training.episode import Episode
@@ -79,12 +76,18 @@ def test_both_doors_give_the_same_learners():
 
 
 @cache
-def filled(num_envs: int = 1, rounds: int = ROUNDS) -> tuple[Any, Any]:
-    """A loop and its state after some decisions in `Count`."""
+def compiled(num_envs: int) -> tuple[Any, Any]:
+    """A loop in `Count` and its program."""
     agent = config.build(small.load("sac", "task=point_mass", f"num_envs={num_envs}")).agent
     loop = loop_of(replace(agent, episode=Episode(counting(), STEPS)), (0, 1), ROUNDS)
-    state = loop.init()
-    return loop, loop.compile(state)(state, jnp.int32(0), jnp.int32(rounds))[0]
+    return loop, loop.compile(loop.init())
+
+
+def filled(num_envs: int, rounds: int = ROUNDS) -> tuple[Any, Any]:
+    """A loop and its state after some decisions."""
+    loop, program = compiled(num_envs)
+    program.copies = None  # new ones
+    return loop, program(loop.init(), jnp.int32(0), jnp.int32(rounds))[0]
 
 
 @pytest.mark.parametrize("num_envs", [1, 2])
@@ -104,26 +107,15 @@ def test_a_row_leads_to_the_next_step_of_its_episode(num_envs):
 
 
 def test_a_resumed_run_marks_where_its_episode_was_cut():
-    loop, state = filled(rounds=3)
+    loop, state = filled(1, rounds=3)
     count = np.array(state.memory.count)
-    again = loop.compile(state)
-    state, _ = again(state, jnp.int32(3), jnp.int32(1))
+    program = compiled(1)[1]
+    program.copies = None
+    state, _ = program(state, jnp.int32(3), jnp.int32(1))
     rows = unpack(state.memory.rows[0, :4, 0], loop.agent.spec)
     assert (state.memory.count == count + 1).all()
     assert rows.truncated.tolist() == [0, 0, 1, 0]
     assert rows.obs[3].tolist() == [1, 0]  # a new copy of the environment, at its first step
-
-
-def test_an_end_for_both_reasons_is_an_end_by_the_task():
-    copies = counting(fail="both").copies([1], STEPS)
-    copies.reset()
-    ends = [copies.step(np.zeros((1, 1))) for _ in range(2)]
-    assert [(e.terminated[0], e.truncated[0]) for e in ends] == [(False, True), (False, True)]
-    copies = counting(fail="both").copies([1], 1)
-    copies.reset()
-    copies._vector.envs[0].episode = 0
-    last = copies.step(np.zeros((1, 1)))
-    assert (last.terminated[0], last.truncated[0]) == (True, False)
 
 
 def test_copies_step_as_in_gymnasiums_vector():
@@ -156,21 +148,6 @@ class Rising:
         return self
 
 
-def test_a_trained_policy_acts_in_the_units_of_its_environment():
-    """What `step` of the user's loop gets from it, or from its program, is what a run gave it."""
-    episode, modes = Episode(counting(), STEPS), {"full": Rising()}
-    trained = Trained("count", episode, modes, Params(), (0,), 0, ())
-    policy, copies = trained.policy(), episode.env.copies([0], STEPS)
-    copies.reset()
-    made = exported.program(episode.spec, modes["full"], Params(), span=trained.span)
-    state, key = np.zeros(made.in_avals[1].shape, np.uint32), np.zeros(2, np.uint32)
-    for u, physical in ((0.5, 2.5), (1.5, 4.0)):
-        assert policy(np.ones(2)) == physical
-        assert copies.step(np.float32([[u]])).reward == physical  # it pays the action
-        action, state = made.call(np.ones(2, np.float32), state, key)
-        assert action == physical
-
-
 class Drawn(Count):
     """The lengths of its episodes follow from the seed."""
 
@@ -184,11 +161,10 @@ class Drawn(Count):
         return *rest, {**info, "is_success": np.float32(self.time == 3)}
 
 
-@pytest.mark.parametrize(("processes", "shape"), [(False, (2, 4)), (True, (1, 2))])
-def test_an_evaluation_pays_each_episode_until_its_own_end(processes, shape):
+def test_an_evaluation_pays_each_episode_until_its_own_end():
     """Also where the others of the call go on."""
-    episode = Episode(External(make=Drawn, processes=processes), 9)
-    keys = jax.random.split(jax.random.key(2), shape)
+    episode = Episode(External(make=Drawn), 9)
+    keys = jax.random.split(jax.random.key(2), (2, 4))
     evaluator = HostEvaluator(episode, ConstantController(0.5), Params(), keys)
     seeds = [seed_of(*map(int, row)) for row in jax.random.key_data(keys).reshape(-1, 2)]
     lengths = [1 + Drawn().reset(seed=seed)[0][0] for seed in seeds]
@@ -222,29 +198,6 @@ class Parts(Count):
         return {"y": super()._seen(), "x": 1}
 
 
-@dataclass(frozen=True)
-class LastEntries:
-    """The mean of the last two entries."""
-
-    def init(self, spec: Spec) -> tuple:
-        return ()
-
-    def act(self, params: Params, state: tuple, obs: jax.Array, key: jax.Array) -> tuple:
-        return obs[-2:].mean()[None], state, {}
-
-
-def test_a_policy_takes_dictionaries_and_export_says_how_they_are_flattened(
-    tmp_path, monkeypatch, capsys
-):
-    episode, modes = Episode(External(make=Parts), STEPS), {"full": LastEntries()}
-    trained = Trained("parts", episode, modes, Params(), (0,), 0, ())
-    assert trained.policy()({"y": np.ones(2) / 2, "x": 2}) == 2.5  # within -2 and 4
-    monkeypatch.setattr(saved, "load_named", lambda given: trained)
-    given = "run=x", "mode=full", f"out={tmp_path / 'p.stablehlo'}"
-    assert call(lambda: command.run(export.main), *given) == 0
-    assert "obs [5]: x [3], y [2]; gymnasium.spaces.flatten(env." in capsys.readouterr().out
-
-
 def test_evaluations_have_environments_and_seeds_of_their_own():
     """The returns of equal keys are equal; of Pendulum-v1, whose starts are drawn."""
     agent = config.build(small.load("sac", "task=gymnasium", "env.id=Pendulum-v1")).agent
@@ -258,3 +211,29 @@ def test_evaluations_have_environments_and_seeds_of_their_own():
     np.testing.assert_allclose(first, second)
     assert evaluator(params, keys, lambda: True) is None
     assert len({seed_of(s, i) for s in range(9) for i in range(9)}) == 81
+
+
+def test_a_trained_policy_acts_in_the_units_of_its_environment():
+    """What `step` of the user's loop gets from it, or from its program, is what a run gave it."""
+    episode, modes = Episode(counting(), STEPS), {"full": Rising()}
+    trained = Trained("count", episode, modes, Params(), (0,), 0, ())
+    policy, copies = trained.policy(), episode.env.copies([0], STEPS)
+    copies.reset()
+    made = exported.program(episode.spec, modes["full"], Params(), span=trained.span)
+    state, key = np.zeros(made.in_avals[1].shape, np.uint32), np.zeros(2, np.uint32)
+    for u, physical in ((0.5, 2.5), (1.5, 4.0)):
+        assert policy(np.ones(2)) == physical
+        assert copies.step(np.float32([[u]])).reward == physical  # it pays the action
+        action, state = made.call(np.ones(2, np.float32), state, key)
+        assert action == physical
+    of_parts = replace(trained, episode=Episode(External(make=Parts), STEPS))
+    assert of_parts.policy()({"y": np.ones(2) / 2, "x": 2}) == 2.5  # a dictionary is flattened
+
+
+def test_an_end_for_both_reasons_is_an_end_by_the_task():
+    for steps, begun, wanted in ((STEPS, 1, [(False, True)] * 2), (1, 0, [(True, False)])):
+        copies = counting(fail="both").copies([1], steps)
+        copies.reset()
+        copies._vector.envs[0].episode = begun
+        ends = [copies.step(np.zeros((1, 1))) for _ in wanted]
+        assert [(e.terminated[0], e.truncated[0]) for e in ends] == wanted

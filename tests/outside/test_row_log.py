@@ -1,4 +1,4 @@
-"""Rows and parameters in files, which one process writes and another reads."""
+"""Rows in a file, which one process writes and another reads."""
 
 import errno
 import os
@@ -7,7 +7,6 @@ import resource
 import numpy as np
 import pytest
 
-from hybrid_rl.outside import handover
 from hybrid_rl.outside.row_log import RowLog
 from hybrid_rl.types import Spec
 
@@ -75,28 +74,3 @@ def test_a_damaged_row_is_not_read(log, tmp_path):
 
 def test_an_empty_file_has_no_last_row(tmp_path):
     assert RowLog(tmp_path / "rows", SPEC).recover() is None
-
-
-TREE = {"a": np.arange(6, dtype=np.float32).reshape(2, 3), "b": np.int32(4)}
-
-
-def test_parameters_are_handed_over(tmp_path):
-    handover.publish(tmp_path / "parameters", TREE, 7)
-    version, tree = handover.latest(tmp_path / "parameters", TREE)
-    assert version == 7
-    assert np.array_equal(tree["a"], TREE["a"])
-    assert tree["b"] == 4
-
-
-@pytest.mark.parametrize("damage", ["absent", "cut", "changed", "other"])
-def test_no_part_of_damaged_parameters_is_used(tmp_path, damage):
-    file, like = tmp_path / "parameters", TREE
-    if damage != "absent":
-        handover.publish(file, TREE, 7)
-    if damage == "cut":
-        file.write_bytes(file.read_bytes()[:-1])
-    if damage == "changed":
-        file.write_bytes(file.read_bytes()[:-1] + b"\x07")
-    if damage == "other":
-        like = TREE | {"a": np.zeros((2, 2), np.float32)}
-    assert handover.latest(file, like) is None

@@ -44,13 +44,3 @@ def test_a_mixture_shapes_the_noise_of_each() -> None:
         now = jax.tree.map(lambda leaf: leaf[3], shaped)
         v, _, _ = both(Params(), carry, jnp.zeros(1), jnp.full(M, 0.2), now)
         np.testing.assert_allclose(v, np.clip(0.2 + 0.1 * want[3], -1, 1), rtol=1e-5)
-
-
-def test_bad_fields_of_knots() -> None:
-    """One line that names the field."""
-    with pytest.raises(ValueError, match=r"knots=0: must be a whole number, 1 or more"):
-        KnotsProposal(0)
-    with pytest.raises(ValueError, match=r"order=quintic: choose one of linear, cubic"):
-        KnotsProposal(order="quintic")
-    with pytest.raises(ValueError, match=r"std=0: must be above 0"):
-        KnotsProposal(std=0)

@@ -5,6 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
+from toys import begun
 
 from hybrid_rl.core import sampling
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
@@ -23,7 +24,7 @@ NOISE, BY_POLICY = NoiseProposal(std=0.3), PolicyProposal(POLICY)
 
 def imagined(proposal: Proposal, samples: int = K) -> sampling.Samples:
     """Candidates in a model x' = x + u."""
-    params = Params(policy=POLICY.init(jax.random.key(0), SPEC))
+    params = Params(policy=begun(POLICY, SPEC))
     both = sampling.Candidates(proposal, samples)
     plan, key = jnp.full((T, SPEC.act), 0.1), jax.random.key(1)
     start = jnp.ones(SPEC.obs)
@@ -47,7 +48,7 @@ def test_strengths_divide_the_candidates() -> None:
     proposal = PolicyProposal(POLICY, (1.0, 0.5), quiet=0.5)
     first = imagined(proposal).path.u[:, 0]
     loud = imagined(PolicyProposal(POLICY)).path.u[:, 0]
-    mean = POLICY.mean(POLICY.init(jax.random.key(0), SPEC), jnp.ones(SPEC.obs))
+    mean = POLICY.mean(begun(POLICY, SPEC), jnp.ones(SPEC.obs))
     np.testing.assert_allclose(first[:2], jnp.stack([mean, mean]), rtol=1e-5)
     np.testing.assert_allclose(first[2:4], loud[2:4], rtol=1e-5)
     np.testing.assert_allclose(first[4:6], 0.5 * jnp.stack([mean, mean]), rtol=1e-5)
@@ -82,16 +83,6 @@ def test_log_density_is_that_of_the_process(correlation) -> None:
     density = multivariate_normal(cov=covariance).logpdf
     wanted = density(e[:, :, 0]) + density(e[:, :, 1])
     np.testing.assert_allclose(paths.log_prob.sum(1), wanted, rtol=1e-3, atol=1e-3)
-
-
-def test_bad_fields() -> None:
-    """One line that names the field."""
-    with pytest.raises(ValueError, match=r"share=1.5: must lie in \[0, 1\]"):
-        MixtureProposal(BY_POLICY, NOISE, 1.5)
-    with pytest.raises(ValueError, match=r"std=0"):
-        NoiseProposal(std=0)
-    with pytest.raises(ValueError, match=r"correlation=1.0"):
-        NoiseProposal(correlation=1.0)
 
 
 def test_each_part_of_a_mixture_is_evaluated_for_its_own_candidates_alone() -> None:

@@ -18,7 +18,6 @@ from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Params
 
 CHEETAH = HalfCheetah("native")
-NOTHING: Any = object()
 ACTION = jnp.linspace(-0.9, 0.9, 6)
 STATE = jax.jit(CHEETAH.reset)(jax.random.key(0))
 AFTER = jax.jit(CHEETAH.step)(STATE, ACTION)
@@ -83,19 +82,3 @@ def test_an_episode_pays_the_goal() -> None:
     end = jax.jit(CHEETAH.step)(middle, u)
     want = goal.reward_of(start.obs, u, middle.obs) + goal.reward_of(middle.obs, u, end.obs)
     np.testing.assert_allclose([now.reward, now.clock.total], want, rtol=1e-5)
-
-
-@pytest.mark.parametrize(
-    ("make", "words"),
-    [
-        (lambda: Aim(CHEETAH, "altitude"), "quantity=altitude: choose one of height, pitch, speed"),
-        (lambda: Aim(CHEETAH, "speed", (1.0, 2.0)), "target=.*: speed needs 1 number"),
-        (lambda: Run(SawyerPush("native")), "world=SawyerPush: has no speed, only block, reach"),
-        (lambda: Push(CHEETAH), "world=HalfCheetah: has no block, only height, pitch, speed"),
-        (lambda: Aim(NOTHING), "needs an environment with `quantities`"),
-        (lambda: Episode(CHEETAH, reward=NOTHING), "object has no reward_of; write def reward_of"),
-    ],
-)
-def test_what_the_environment_lacks_is_named(make: Any, words: str) -> None:
-    with pytest.raises(ValueError, match=words):
-        make()

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from hybrid_rl.envs.analytic.pendulum import Pendulum
-from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.objectives.predicted_return import PredictedReturn
 from hybrid_rl.rewards.known import KnownReward
 from hybrid_rl.types import Params, Path
@@ -27,8 +26,3 @@ def test_return_is_the_discounted_sum_of_the_rewards_of_an_episode() -> None:
     np.testing.assert_allclose(objective.reward_to_go(Params(), path), want, rtol=1e-5)
     value, _ = objective.prepare(Params(), (), path.x[0], path.u[0], jax.random.key(0))
     assert float(value(path)) == pytest.approx(want[0], rel=1e-5)
-
-
-def test_an_environment_without_a_known_reward_is_refused() -> None:
-    with pytest.raises(ValueError, match="needs an environment with a known reward"):
-        KnownReward(HalfCheetah())

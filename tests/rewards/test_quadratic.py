@@ -31,9 +31,3 @@ def test_return_is_the_plain_sum() -> None:
     np.testing.assert_allclose(to_go, want, rtol=1e-4)
     value, _ = objective.prepare(Params(), (), path.x[0], path.u[0], jax.random.key(0))
     assert float(jax.jit(value)(path)) == pytest.approx(want[0], rel=1e-4)
-
-
-def test_bad_weights_are_refused() -> None:
-    """The error names the field."""
-    with pytest.raises(ValueError, match="state_weights"):
-        QuadraticReward(WORLD, (-1.0,))

@@ -51,6 +51,18 @@ def test_the_last_round_of_a_run_may_end_beyond_total_steps(tmp_path, capsys):
     assert result["finished"]
 
 
+def test_a_run_ends_with_its_curve(tmp_path, capfd):
+    folder = tmp_path / "run"
+    assert call_train(*TINY, "algo=sac", "eval_every=200", f"run_dir={folder}") == 0
+    printed = capfd.readouterr().out
+    assert printed.index("compiling on") < printed.index("Evaluation return")
+    assert "600 decisions\n" in printed
+    assert (folder / "curve.png").stat().st_size > 1000
+    (line,) = json.loads((folder / "curve.json").read_text())["curves"]
+    evaluated = {r["step"]: r["eval/return"] for r in rows_of(folder) if "eval/return" in r}
+    assert dict(zip(line["x"], line["iqm"], strict=True)) == pytest.approx(evaluated)
+
+
 def test_the_last_line_has_both_returns():
     values = {"final_eval": [-19.0, None, -20.0], "final_return": [-36.4, None, -36.4]}
     assert train._result(values) == (

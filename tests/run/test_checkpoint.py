@@ -147,11 +147,9 @@ def test_a_damaged_one_does_not_count_as_kept(three):
     assert checkpoint.steps(three) == [20, 40]
 
 
-def test_size_is_known_beforehand(tmp_path):
-    state = {"x": jnp.zeros((1000, 100)), "key": jax.random.key(0)}
-    saved = checkpoint.save(tmp_path, 0, state, {})
+def test_it_is_little_larger_than_its_arrays(tmp_path):
+    saved = checkpoint.save(tmp_path, 0, {"x": jnp.zeros((1000, 100))}, {})
     written = sum(path.stat().st_size for path in saved.rglob("*") if path.is_file())
-    assert checkpoint.nbytes(state) == 400_008
     assert 400_000 < written < 420_000
 
 

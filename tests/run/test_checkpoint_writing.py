@@ -129,7 +129,7 @@ def test_a_write_that_fails_halfway_leaves_what_was_there(three, capfd):
             checkpoint.save(three, 40, big, {})
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
-    assert "not written: File too large; checkpoint 30 is whole" in str(caught.value)
+    assert "not written: File too large; checkpoint 30 is intact" in str(caught.value)
     assert capfd.readouterr() == ("", "")
     assert_untouched(three)
 
@@ -144,7 +144,7 @@ def test_a_full_disk_is_one_clear_line(three, monkeypatch):
         checkpoint.save(three, 40, state_at(40), {})
     assert str(caught.value) == (
         f"checkpoint 40 in {three} was not written: [Errno 28] No space left on device; "
-        "checkpoint 30 is whole"
+        "checkpoint 30 is intact"
     )
     assert_untouched(three)
 

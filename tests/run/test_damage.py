@@ -92,7 +92,7 @@ def test_a_full_disk_leaves_the_last_checkpoint(copied, monkeypatch, capfd):
     assert call_train(f"resume={copied}", "total_steps=700") == 1
     printed = only_line(capfd)
     assert "checkpoint 700" in printed
-    assert "File too large; checkpoint 600 is whole" in printed
+    assert "File too large; checkpoint 600 is intact" in printed
     assert contents(copied / "checkpoints") == before
 
 
@@ -131,7 +131,7 @@ def test_a_world_that_breaks_is_named_and_can_be_mended(copied, monkeypatch, cap
         "hybrid_rl.envs.analytic.pendulum.Pendulum at obs ["
     )
     assert " gives reward nan, obs [" in line
-    assert line.endswith("; checkpoint 50 is whole: mend that and resume it\n")
+    assert "; checkpoint 50 is intact: fix what fails and resume it" in line
     assert not summary_of(folder)["finished"]
     assert checkpoint.steps(folder / "checkpoints") == [50]
     assert call_train(f"resume={folder}") == 0
@@ -157,7 +157,7 @@ def test_a_learner_that_breaks_is_named(copied, monkeypatch, capfd):
     assert call_train(f"resume={copied}", "total_steps=700") == 1
     printed = only_line(capfd)
     assert printed.startswith("hybrid_rl: seed 0, step 700: policy.")
-    assert " is not finite; checkpoint 600 is whole" in printed
+    assert " is not finite; checkpoint 600 is intact" in printed
     assert checkpoint.steps(copied / "checkpoints") == [500, 600]
 
 
@@ -181,7 +181,7 @@ def test_environments_of_which_no_learner_fits_are_named(monkeypatch):
     loop: Any = SimpleNamespace(
         seeds=(0,), agent=SimpleNamespace(num_envs=10**9), memory=lambda _: 2e12
     )
-    with pytest.raises(MemoryError, match=r"; fewer than num_envs=1000000000 may fit$"):
+    with pytest.raises(MemoryError, match=r"; lower num_envs, too$"):
         memory.check(loop, None)
 
 

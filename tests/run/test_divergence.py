@@ -8,14 +8,8 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from hybrid_rl.critics.ensemble_q import EnsembleQ
 from hybrid_rl.data.replay import Replay
 from hybrid_rl.envs.analytic.pendulum import Pendulum
-from hybrid_rl.features.monomials import Monomials
-from hybrid_rl.learners.least_squares import LeastSquares
-from hybrid_rl.learners.sac import SAC
-from hybrid_rl.models.koopman import Koopman
-from hybrid_rl.policies.tanh_gaussian import TanhGaussian
 from hybrid_rl.run import divergence
 from hybrid_rl.run.logs import rows
 from hybrid_rl.training.agent import Agent
@@ -24,8 +18,6 @@ from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Transition
 
 WORLDS, NAN = 2, float("nan")
-BY_GRADIENT = {"policy": SAC(TanhGaussian(), EnsembleQ())}
-BY_LEAST_SQUARES = {"model": LeastSquares(Koopman(Monomials()))}
 
 
 def decision(reward):
@@ -35,20 +27,17 @@ def decision(reward):
     return Transition(obs, action, jnp.array([1.0, reward]), flags, flags, obs)
 
 
-def diverged(capacity, rewards, reward=None, learners=None, learned=0.0):
-    """The learners of a program, and their state after these decisions of one learner.
-
-    learners: of the agent; learned: a number that they have learned.
-    """
+def diverged(capacity, rewards, reward=None):
+    """The learners of a program, and their state after these decisions of one learner."""
     replay = Replay(capacity)
     episode = Episode(Pendulum(), reward=reward)
     with patch("hybrid_rl.training.contract.check_members"):  # of what neither acts nor learns
-        agent = Agent(episode, SimpleNamespace(act=None), learners or {}, replay, WORLDS)
+        agent = Agent(episode, SimpleNamespace(act=None), {}, replay, WORLDS)
     memory = replay.init(agent.spec, WORLDS)
     for reward in rewards:
         memory = replay.add(memory, decision(reward))
     memory = jax.tree.map(lambda leaf: leaf[None], memory)
-    state = SimpleNamespace(memory=memory, learners={"policy": jnp.array([learned])})
+    state = SimpleNamespace(memory=memory)
     return divergence.Diverged(SimpleNamespace(agent=agent, seeds=(3,), axis=Axis()), None), state
 
 
@@ -70,7 +59,7 @@ def test_a_reward_that_is_not_finite_is_the_worlds_and_its_decision_is_shown():
         "hybrid_rl.envs.analytic.pendulum.Pendulum at obs [ 0.5 , 0.25, -1. ], action [0.75] gives "
         "reward nan, obs [ 0.5 , 0.25, -1. ]; there is no checkpoint"
     )
-    assert divergence.line(ends, 0, 4).endswith("; checkpoint 4 is whole: mend that and resume it")
+    assert "; checkpoint 4 is intact: fix what fails and resume it" in divergence.line(ends, 0, 4)
 
 
 def test_a_reward_of_the_users_is_named_and_not_the_world():
@@ -90,33 +79,10 @@ def test_a_decision_that_the_memory_forgot_is_not_shown():
     "bad", [{"sac_q": 1, "world_reward": 2}, {"world_action": 2, "world_reward": 2}]
 )
 def test_what_was_learned_is_to_blame_where_it_failed_first_or_acted(bad):
-    learners, state = diverged(100, [-1] * 5, learners=BY_GRADIENT, learned=NAN)
+    learners, state = diverged(100, [-1] * 5)
     ends = [*learners.add(rows.infinite(metrics(**bad), 0, WORLDS), state, 10).values()]
     assert divergence.line(ends, 0, None) == (
         f"seed 3, step {ends[0]['step']}: {ends[0]['quantity']} is not finite; there is no "
-        "checkpoint: begin again with a lower learning rate"
+        "checkpoint"
     )
     assert ends[0]["quantity"] in ("sac/q", "world/action")
-
-
-def test_a_return_by_sound_learners_is_a_fault_of_what_acted_or_paid():
-    learners, state = diverged(100, [-1] * 5)
-    (end,) = learners.add({0: (10, "eval/return")}, state, 10).values()
-    assert end["world"].endswith("see the world's rewards and the controller's actions")
-
-
-@pytest.mark.parametrize(
-    ("learners", "quantity", "learned", "words"),
-    [
-        ({}, "world/action", 0.0, "nothing is learned here: see what the controller acts by"),
-        (BY_GRADIENT, "world/action", 0.0, "all that was learned is finite: see what the contr"),
-        (BY_LEAST_SQUARES, "model/loss", NAN, "no learner has a learning rate: see the data and"),
-    ],
-)
-def test_no_lower_learning_rate_is_advised_where_none_is_to_blame(
-    learners, quantity, learned, words
-):
-    ended, state = diverged(100, [-1] * 5, learners=learners, learned=learned)
-    line = divergence.line([*ended.add({0: (2, quantity)}, state, 10).values()], 0, None)
-    assert f"{quantity} is not finite, {words}" in line
-    assert line.endswith("; there is no checkpoint")

@@ -2,6 +2,7 @@
 
 import errno
 import fcntl
+import os
 import re
 import signal
 import socket
@@ -11,6 +12,7 @@ import sys
 import pytest
 from tiny import TINY, call_train, contents, only_line
 
+from hybrid_rl.errors import UsageError
 from hybrid_rl.run.files.lock import lock
 
 pytestmark = pytest.mark.turns(3)
@@ -81,14 +83,19 @@ def test_one_at_a_time_has_a_folder(tmp_path):
     assert contents(tmp_path) == {}
 
 
-def test_a_disk_without_locks_is_one_line(tmp_path, monkeypatch, capsys):
-    def none(handle, how):
-        raise OSError(errno.ENOLCK, "No locks available")
+def test_a_disk_without_locks_or_that_fails_is_one_line(tmp_path, monkeypatch, capsys):
+    numbers = [errno.ENOLCK, errno.EIO]
 
-    monkeypatch.setattr(fcntl, "flock", none)
+    def fails(handle, how):
+        raise OSError(numbers[0], os.strerror(numbers.pop(0)))
+
+    monkeypatch.setattr(fcntl, "flock", fails)
     with lock(tmp_path, "run_dir"):
         line = capsys.readouterr().out
     assert line == f"{tmp_path}: this disk has no locks; let no other process write there\n"
+    line = rf"run_dir={tmp_path}: cannot be written to \(Input/output error\)"
+    with pytest.raises(UsageError, match=line), lock(tmp_path, "run_dir"):
+        pass
 
 
 def test_two_fresh_runs_of_one_folder_do_not_both_begin(tmp_path):
@@ -112,13 +119,3 @@ def test_the_lock_of_a_folder_with_the_name_of_a_moved_one_stays(tmp_path):
         folder.mkdir()
         (folder / "lock").write_text("of another process")
     assert (folder / "lock").read_text() == "of another process"
-
-
-def test_a_lock_that_fails_is_named(tmp_path, monkeypatch):
-    def fails(handle, how):
-        raise OSError(errno.EIO, "Input/output error")
-
-    monkeypatch.setattr(fcntl, "flock", fails)
-    named = pytest.raises(OSError, match=f"Input/output error: '{tmp_path}/lock'")
-    with named, lock(tmp_path, "run_dir"):
-        pass

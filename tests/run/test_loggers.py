@@ -36,7 +36,7 @@ def numbers(folder):
 
 def test_the_table_has_the_numbers_of_the_rows_also_of_a_resumed_run(tmp_path):
     """What was written after the checkpoint, or cut, is not in it."""
-    with RunLog(tmp_path, [0], [loggers.CSV(tmp_path)]) as log:
+    with RunLog(tmp_path, [0], {}, ["csv"]) as log:
         log.write([row(1, a=0.1, b=7), row(2, a=float("nan"), diverged="sac/q", c=1e-30)])
         assert table(tmp_path)[0] == ["step", "seed", "wall_s", "metric", "value"]
         assert table(tmp_path)[1:] == numbers(tmp_path)
@@ -44,7 +44,7 @@ def test_the_table_has_the_numbers_of_the_rows_also_of_a_resumed_run(tmp_path):
         log.write([row(3, a=5.0)])
     with (tmp_path / "metrics.csv").open("a") as file:
         file.write("4,0,")
-    with RunLog(tmp_path, [0], [loggers.CSV(tmp_path)]) as log:
+    with RunLog(tmp_path, [0], {}, ["csv"]) as log:
         log.rewind(offset, step=2)
         log.write([row(3, a=6.0)])
     assert table(tmp_path)[1:] == numbers(tmp_path)
@@ -84,7 +84,7 @@ def wandb(monkeypatch):
 
 def test_each_seed_is_a_run_of_wandb_that_a_resumed_run_continues(tmp_path, wandb):
     for step in (1, 2):
-        with RunLog(tmp_path, [3, 4], [loggers.WandB(tmp_path, [3, 4], CONFIG)]) as log:
+        with RunLog(tmp_path, [3, 4], CONFIG, ["wandb"]) as log:
             log.write([row(step, 3, a=0.5, diverged="x"), row(step, 4, a=float("inf"), b=2)])
     first, second, again, _ = wandb
     assert first.logged == [(1, {"a": 0.5, "wall_s": 0.5})]
@@ -107,8 +107,7 @@ def test_trackio_gets_the_rows_of_a_seed_together(tmp_path, monkeypatch):
 
     module = SimpleNamespace(init=init, finish=lambda: runs[-1].finish())
     monkeypatch.setitem(sys.modules, "trackio", module)
-    made = [[loggers.Trackio(tmp_path, [3, 4], CONFIG)] for _ in range(2)]
-    with RunLog(tmp_path, [3, 4], made[0]) as log:
+    with RunLog(tmp_path, [3, 4], CONFIG, ["trackio"]) as log:
         for step in (1, 2):
             log.write([row(step, 3, a=0.5 * step), row(step, 4, a=float("inf"))])
         assert runs == []
@@ -118,7 +117,7 @@ def test_trackio_gets_the_rows_of_a_seed_together(tmp_path, monkeypatch):
         [(1, {"a": 0.5, "wall_s": 0.5}), (2, {"a": 1.0, "wall_s": 1.0})],
         [(3, {"a": 3.0, "wall_s": 1.5})],
     ]
-    with RunLog(tmp_path, [3, 4], made[1]) as log:
+    with RunLog(tmp_path, [3, 4], CONFIG, ["trackio"]) as log:
         log.rewind(offset, step=2)
         log.write([row(3, 4, a=4.0)])
     assert [run.given["resume"] for run in runs] == ["never", "allow", "allow"]

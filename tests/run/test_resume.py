@@ -114,7 +114,7 @@ def test_a_finished_run_stays_as_it_is(whole, capsys, given):
     """Also if settings are repeated: keys of config.yaml, or the whole command line."""
     before = contents(whole)
     assert call_train(f"resume={whole}", *given) == 0
-    assert "finished already at 600; raise total_steps to go on" in capsys.readouterr().out
+    assert "already finished (600 steps); raise total_steps to continue" in capsys.readouterr().out
     assert contents(whole) == before
 
 

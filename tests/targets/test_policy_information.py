@@ -6,12 +6,12 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from toys import begun
 
 from hybrid_rl.core.domain import Box
 from hybrid_rl.core.labels import Queried, empty
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
 from hybrid_rl.policies.deterministic import Clones, Deterministic
-from hybrid_rl.policies.tanh_gaussian import TanhGaussian
 from hybrid_rl.targets.policy_disagreement import PolicyDisagreement
 from hybrid_rl.targets.policy_information import PolicyInformation
 from hybrid_rl.types import Params, Spec
@@ -23,7 +23,7 @@ X: Any = np.random.default_rng(3).normal(size=(30, 4))
 def made(hidden: tuple[int, ...], criterion: str, sigma: float = 0.5) -> tuple:
     """A target and random parameters, biases included."""
     policy = Deterministic(hidden=hidden, activation="sin", sigma=sigma)
-    params = policy.init(jax.random.key(0), SPEC)
+    params = begun(policy, SPEC)
     leaves, tree = jax.tree.flatten(params)
     keys = jax.random.split(jax.random.key(1), len(leaves))
     moved = [x + 0.3 * jax.random.normal(k, x.shape) for x, k in zip(leaves, keys, strict=True)]
@@ -101,38 +101,17 @@ def test_other_coordinates_have_their_equilibrium_values() -> None:
     policy, s = Deterministic(hidden=()), jnp.array([0.7, -0.2])
     world: Any = QuadcopterSE3()
     target = PolicyInformation(policy, world, Box((12, 17), (-1, -1), (1, 1)), "trace")
-    params = Params(policy=policy.init(jax.random.key(0), Spec(obs=18, act=4, dt=0.1)))
+    params = Params(policy=begun(policy, Spec(obs=18, act=4, dt=0.1)))
     wanted = np.log(4 * (3 + 0.49 + 0.04 + 1))
     assert float(target.log_density(params, s)) == pytest.approx(wanted, rel=1e-5)
-
-
-@pytest.mark.parametrize("fields", [{"criterion": "norm"}, {"sigma": 0.0}, {"floor": 0.0}])
-def test_bad_fields_are_refused(fields: dict) -> None:
-    """The error names the field."""
-    with pytest.raises(ValueError, match=f"{next(iter(fields))}"):
-        PolicyInformation(Deterministic(), **fields)
-
-
-def test_a_policy_without_a_mean_before_squashing_is_refused() -> None:
-    """The error names one that has it."""
-    gaussian: Any = TanhGaussian()
-    with pytest.raises(ValueError, match="TanhGaussian: needs policy=deterministic"):
-        PolicyInformation(gaussian)
 
 
 def test_the_disagreement_is_the_variance_of_the_clones() -> None:
     """In NumPy, of linear clones that are clipped."""
     policy = Clones(hidden=(), squash="clip", members=4)
-    params = policy.init(jax.random.key(0), SPEC)
+    params = begun(policy, SPEC)
     W = np.asarray(params["weights"]["Dense_0"]["kernel"], float)
     wanted = np.clip(X @ W, -1, 1).var(0).sum(1)
     target = PolicyDisagreement(policy)
     log_p = jax.vmap(lambda x: target.log_density(Params(policy=params), x))(jnp.asarray(X))
     np.testing.assert_allclose(np.exp(log_p), wanted, rtol=1e-3, atol=1e-7)
-
-
-def test_a_single_policy_has_no_disagreement() -> None:
-    """The error names one that has it."""
-    single: Any = Deterministic()
-    with pytest.raises(ValueError, match="Deterministic: needs policy=clones"):
-        PolicyDisagreement(single)

@@ -5,7 +5,7 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 import numpy as np
-import pytest
+from toys import begun
 
 from hybrid_rl.core.labels import Labels, Queried
 from hybrid_rl.policies.deterministic import Deterministic
@@ -16,7 +16,7 @@ RNG = np.random.default_rng(5)
 X, KNOWN = RNG.normal(size=(30, 4)), RNG.normal(size=(10, 4))
 SCALE = np.array([1.0, 2.0, 0.5, 1.5])
 POLICY = Deterministic(hidden=())
-WEIGHTS = POLICY.init(jax.random.key(0), Spec(obs=4, act=2, dt=0.1))
+WEIGHTS = begun(POLICY, Spec(obs=4, act=2, dt=0.1))
 ACTION = RNG.uniform(-1, 1, (10, 2))
 
 
@@ -51,10 +51,3 @@ def test_a_residual_without_labels_is_finite() -> None:
     """And far from all labels the nearest one counts."""
     assert np.isfinite(at(PolicyResidual(POLICY), believed(count=0))).all()
     assert np.isfinite(at(PolicyResidual(POLICY, bandwidth=1e-3), believed())).all()
-
-
-@pytest.mark.parametrize("name", ["bandwidth", "floor"])
-def test_numbers_out_of_range_are_refused(name: str) -> None:
-    """The error names the field."""
-    with pytest.raises(ValueError, match=f"{name}=0"):
-        PolicyResidual(POLICY, **{name: 0})

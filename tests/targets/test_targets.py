@@ -10,10 +10,6 @@ from scipy.stats import multivariate_normal
 
 from hybrid_rl.core.domain import Box
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
-from hybrid_rl.fields import FieldError
-from hybrid_rl.objectives.fourier_ergodic import FourierErgodic
-from hybrid_rl.objectives.informative_path import InformativePath
-from hybrid_rl.objectives.kl_ergodic import JensenErgodic, KLErgodic
 from hybrid_rl.targets.mixture import Mixture
 from hybrid_rl.targets.model_uncertainty import ModelUncertainty
 from hybrid_rl.targets.upper_confidence_bound import UpperConfidenceBound
@@ -65,36 +61,3 @@ def test_the_model_uncertainty_follows_its_equation() -> None:
     target = ModelUncertainty(Tilted(), QuadcopterSE3(), BOX, sharpness=4.0)
     got = target.log_density(Params(), jnp.array([-0.5, 2.0]))
     assert float(got) == pytest.approx(4 * (0.5 + 2.0 + 3) / 18)
-
-
-@pytest.mark.parametrize(
-    "change",
-    [
-        {"stds": (0.1,)},
-        {"weights": (0.0, 1.0)},
-        {"means": ((float("nan"),), (0.7,))},
-        {"means": ((), (0.7,))},
-        {"means": (), "stds": (), "weights": ()},
-    ],
-)
-def test_bad_mixtures_are_refused(change) -> None:
-    """For lengths, signs, and what is no number."""
-    with pytest.raises(FieldError, match=next(iter(change))):
-        Mixture(**change)
-
-
-def test_a_mean_with_more_entries_than_the_domain_is_refused() -> None:
-    """Its last entries would be lost."""
-    with pytest.raises(ValueError, match=r"means=.*: must have at most the 2 entries"):
-        Mixture(((0.3, 0.3, 1.0),), (0.2,), (1.0,)).log_density(Params(), jnp.zeros(2))
-
-
-@pytest.mark.parametrize("kind", [KLErgodic, JensenErgodic, FourierErgodic, InformativePath])
-def test_a_target_outside_the_domain_is_refused(kind) -> None:
-    """One of which a part lies inside, or the tail of a Gaussian wider than the box, is not."""
-    square = Box((0, 1), (0.0, 0.0), (1.0, 1.0))
-    line = r"target=Mixture: all of it lies outside domain.low=\[0.0, 0.0\] domain.high=\[1.0, "
-    with pytest.raises(FieldError, match=line):
-        kind(Mixture(((3.0,), (0.5, -2.0)), (0.1, 0.5), (1.0, 1.0)), square)
-    for inside in (Mixture(((3.0,), (0.5,))), Mixture(((9.0,),), (5.0,), (1.0,))):
-        assert kind(inside, square)

@@ -149,7 +149,7 @@ def test_what_is_missing_or_damaged_is_one_line(runs, tmp_path, capfd):
     for given, line in (
         (f"run={tmp_path / 'none'}", "run=" + str(tmp_path / "none") + ": no run there"),
         (f"run={first}", "evaluation_full.json: is no evaluation that `evaluate` wrote"),
-        (f"run={tmp_path}", f"wrote; it is one of the 2 runs in run={tmp_path}"),
+        (f"run={tmp_path}", "evaluation_full.json: is no evaluation that `evaluate` wrote"),
         (f"run={second} out=a.pdf", "out=a.pdf: must end in .html"),
         (f"run={second} video=gif", "video=gif: choose one of auto, none"),
         ("", "run: not given; give run=DIR"),

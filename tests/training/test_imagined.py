@@ -31,19 +31,15 @@ class Drawn:
     """The world's dynamics, for a batch."""
 
     def lift(self, params: Any, obs: Array) -> Array:
-        """The observation."""
         return obs
 
     def init(self, key: Array, spec: Any) -> tuple[()]:
-        """Nothing."""
         return ()
 
     def step(self, params: Any, x: Array, u: Array) -> Array:
-        """The next observation [o]."""
         return WORLD.dynamics(x, u)
 
     def draw(self, params: Any, x: Array, u: Array, noise: Array, key: Array) -> Array:
-        """The next observations [B, o]."""
         return jax.vmap(WORLD.dynamics)(x, u)
 
 

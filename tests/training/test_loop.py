@@ -29,28 +29,20 @@ def operations(program, dtype, size):
     return counts
 
 
-def test_the_replay_memory_is_never_copied():
-    """One write of a row per decision, and no other array of its size."""
+def test_the_replay_memory_is_never_copied_and_a_resumed_run_finds_its_program():
+    """One write of a row per decision, no other array of its size; the same from a checkpoint."""
     capacity = ["total_steps=20011", "replay.capacity=20011"]  # larger than any other array
     run = config.build(config.load([*TINY, "algo=sac", "num_seeds=2", *capacity]))
     loop = Loop(run.agent, run.seeds, stride=10)
-    rows = loop.shapes().memory.rows
-    program = loop.compile(loop.init())
+    rows, fresh = loop.shapes().memory.rows, loop.init()
+    placed = loop.on_devices(jax.device_get(jax.tree.map(jax.numpy.copy, fresh)))
+    one, other = (loop.trace(state).lower() for state in (fresh, placed))
+    assert one.as_text() == other.as_text()
+    program = loop.compile(fresh)
     counts = operations(program.as_text(), "f32", rows.size)
     assert sum(counts[name] for name in WRITES) == 1
     assert set(counts) <= WRITES | NAMES, counts
     assert program.memory_analysis().temp_size_in_bytes < rows.size * 4 / 10
-
-
-def test_a_state_from_a_checkpoint_has_the_same_program():
-    """So that a resumed run finds it compiled."""
-    run = config.build(config.load([*TINY, "algo=sac", "num_seeds=2"]))
-    loop = Loop(run.agent, run.seeds, stride=10)
-    fresh = loop.init()
-    host = jax.device_get(jax.tree.map(jax.numpy.copy, fresh))
-    placed = loop.on_devices(host)
-    one, other = (loop.trace(state).lower().as_text() for state in (fresh, placed))
-    assert one == other
 
 
 @pytest.mark.parametrize("lacks", [False, True])

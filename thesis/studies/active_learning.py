@@ -29,16 +29,15 @@ import numpy as np
 from jax import Array
 from scipy.stats import mannwhitneyu
 
-from hybrid_rl.analysis.curves import banded
-from hybrid_rl.analysis.recorded import Recorded, read
 from hybrid_rl.analysis.results import find
-from hybrid_rl.analysis.significant import rounded
 from hybrid_rl.analysis.style import blank, legend_outside, line_styles, plain_log, words
 from hybrid_rl.cli.arguments import whole
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.saved import restore
 from hybrid_rl.settings.build import Run
 from hybrid_rl.thesis.studies import unseen
+from hybrid_rl.thesis.studies.numbers import banded, rounded
+from hybrid_rl.thesis.studies.recorded import Recorded, read
 from hybrid_rl.thesis.studies.unseen import Unseen
 from hybrid_rl.types import Batch
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.analysis.curves import band_of, improvement
+from hybrid_rl.analysis.curves import improvement
 from hybrid_rl.analysis.style import STROKES, blank, line_styles, plain_log, words
 from hybrid_rl.thesis.studies import backflips
 from hybrid_rl.thesis.studies.backflips import (
@@ -19,6 +19,7 @@ from hybrid_rl.thesis.studies.backflips import (
     teacher,
     trained,
 )
+from hybrid_rl.thesis.studies.numbers import band_of
 
 HATCHES = ("", "//", "..", "xx", "--", "oo")  # of bars, in the order of STROKES
 CRITERIA = {

@@ -24,7 +24,6 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from hybrid_rl.analysis.recorded import read
 from hybrid_rl.analysis.results import find
 from hybrid_rl.core import labels
 from hybrid_rl.envs.analytic.lander import Lander
@@ -32,6 +31,7 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.run.folder import parse_config
 from hybrid_rl.run.saved import restore
 from hybrid_rl.settings.build import Run, build, load
+from hybrid_rl.thesis.studies.recorded import read
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import (
     advance,

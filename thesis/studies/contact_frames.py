@@ -4,11 +4,11 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.analysis.belief.frames import Drawn, beliefs, trial_of, truth
-from hybrid_rl.analysis.belief.panel import Panel
 from hybrid_rl.analysis.style import blank, legend_outside
 from hybrid_rl.errors import UsageError
 from hybrid_rl.thesis.studies import contacts
+from hybrid_rl.thesis.studies.belief_frames import Drawn, beliefs, trial_of, truth
+from hybrid_rl.thesis.studies.belief_panel import Panel
 from hybrid_rl.thesis.studies.contact_maps_picture import marks_of
 
 COLUMNS = 6

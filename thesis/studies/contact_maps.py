@@ -22,9 +22,9 @@ IQM and 95% band over trials; shares with Wilson's 95% interval.
 
 from typing import Annotated, Any
 
-from hybrid_rl.analysis.significant import rounded
 from hybrid_rl.cli.arguments import one_of, whole
 from hybrid_rl.thesis.studies import contact_frames, contact_maps_picture, contact_poses
+from hybrid_rl.thesis.studies.numbers import rounded
 
 DRAWN = {"pose": contact_poses.draw_poses, "absence": contact_poses.draw_absence}
 LINES = {

@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.analysis.belief.panel import HALF, Panel, View, level
-from hybrid_rl.analysis.curves import band_of, banded, plural
+from hybrid_rl.analysis.curves import plural
 from hybrid_rl.analysis.style import blank, legend_outside, line_styles, words
 from hybrid_rl.beliefs.maps import learned
 from hybrid_rl.errors import UsageError
 from hybrid_rl.thesis.studies import false_contacts
+from hybrid_rl.thesis.studies.belief_panel import HALF, Panel, View, level
 from hybrid_rl.thesis.studies.contacts import (
     Trials,
     decisions,
@@ -20,6 +20,7 @@ from hybrid_rl.thesis.studies.contacts import (
     touched_all,
     trials,
 )
+from hybrid_rl.thesis.studies.numbers import band_of, banded
 
 NAMES = {
     "objects": "objects touched",

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.special import digamma
 
 from hybrid_rl.analysis import rows
-from hybrid_rl.analysis.curves import band, band_of, plural
+from hybrid_rl.analysis.curves import band, plural
 from hybrid_rl.analysis.style import (
     GREY,
     blank,
@@ -31,7 +31,9 @@ from hybrid_rl.thesis.studies.contacts import (
     stuck,
     trials,
 )
+from hybrid_rl.thesis.studies.dots import dots
 from hybrid_rl.thesis.studies.falls import wilson
+from hybrid_rl.thesis.studies.numbers import band_of
 
 KINDS = {  # which measurements y [S, T] count
     "all": lambda y: y >= 0,
@@ -92,7 +94,7 @@ def draw_poses(numbers: dict[str, Any]) -> Any:
         rows.points(axes, each, marks if axes is errors else ())
         plain_log(axes.xaxis, narrow=True)
     each = {label: np.array(one["found"]["each"], float) for label, one in methods.items()}
-    rows.trials(waits, each, times[-1])
+    dots(waits, each, times[-1])
     legend_outside(errors)
     waits.xaxis.set_major_locator(MaxNLocator(5))
     waits.set(title="Found after [s], grey: never", xlim=(0, None))

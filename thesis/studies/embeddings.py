@@ -13,12 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.analysis import rows
 from hybrid_rl.analysis.curves import plural
-from hybrid_rl.analysis.recorded import read
 from hybrid_rl.analysis.results import RunFolder, find
 from hybrid_rl.analysis.style import blank, legend_below, line_styles, plain_log, words
 from hybrid_rl.errors import UsageError
+from hybrid_rl.thesis.studies.dots import dots
+from hybrid_rl.thesis.studies.recorded import read
 
 CART, ARM = "cart_pendulum", "two_link"
 SUCCESS = "eval/policy_success"
@@ -146,7 +146,7 @@ def _carts(axes: Any, methods: dict[str, Any]) -> None:
     """The first stable iteration of each trial; those that never were are at the right edge."""
     end = max(one["last_iteration"] for one in methods.values())
     axes.set(xscale="log", xlim=(0.8, None), xlabel="Iterations (grey: never)")
-    rows.trials(axes, {label: one["iterations_of_trials"] for label, one in methods.items()}, end)
+    dots(axes, {label: one["iterations_of_trials"] for label, one in methods.items()}, end)
     axes.set_title("Cart pendulum: until stabilised")
     plain_log(axes.xaxis)
 

@@ -20,10 +20,10 @@ from typing import Annotated, Any
 import numpy as np
 
 from hybrid_rl.analysis.curves import plural, spread
-from hybrid_rl.analysis.significant import rounded
 from hybrid_rl.analysis.style import blank, legend_below, line_styles, plain_log
 from hybrid_rl.cli.arguments import one_of, whole
 from hybrid_rl.settings.build import Run, build, load
+from hybrid_rl.thesis.studies.numbers import rounded
 from hybrid_rl.thesis.studies.time_averages import (
     GRID,
     VARIANCE,

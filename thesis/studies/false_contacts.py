@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from scipy import ndimage
 
-from hybrid_rl.analysis.curves import band_of
 from hybrid_rl.thesis.studies.contacts import CLOSE, Trials, distances, grid
+from hybrid_rl.thesis.studies.numbers import band_of
 
 TOUCH = "world/touch"
 

@@ -8,10 +8,10 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from hybrid_rl.analysis.recorded import read as read_memory
 from hybrid_rl.analysis.results import RunFolder, differences, short
 from hybrid_rl.data.replay import unpack
 from hybrid_rl.envs.analytic.quadcopter_se3 import KT, MASS, THRUST, G, QuadcopterSE3
+from hybrid_rl.thesis.studies.recorded import read as read_memory
 
 
 class Flight(NamedTuple):

@@ -15,10 +15,10 @@ view=information  figure 6-10: information of the queries of these runs, under t
 
 from typing import Annotated, Any
 
-from hybrid_rl.analysis.significant import rounded
 from hybrid_rl.cli.arguments import one_of, whole
 from hybrid_rl.errors import UsageError
 from hybrid_rl.thesis.studies import backflip_picture, queries_picture
+from hybrid_rl.thesis.studies.numbers import rounded
 
 DRAWN = {
     "queries": queries_picture.picture,

@@ -18,7 +18,6 @@ view=tracking   figures 7-6 and 7-7: RMSE, correlation and lag along a reference
 
 from typing import Annotated, Any
 
-from hybrid_rl.analysis.significant import rounded
 from hybrid_rl.cli.arguments import one_of, whole
 from hybrid_rl.thesis.studies import (
     embeddings,
@@ -28,6 +27,7 @@ from hybrid_rl.thesis.studies import (
     oscillator,
     tracking,
 )
+from hybrid_rl.thesis.studies.numbers import rounded
 
 DRAWN = {
     "falls": falls_picture.draw_information,

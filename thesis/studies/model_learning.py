@@ -24,14 +24,14 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.analysis.curves import banded, plural
+from hybrid_rl.analysis.curves import plural
 from hybrid_rl.analysis.results import find
-from hybrid_rl.analysis.significant import rounded
 from hybrid_rl.analysis.style import blank, legend_outside, line_styles, plain_log
 from hybrid_rl.cli.arguments import whole
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
 from hybrid_rl.settings.build import Run, build, load
 from hybrid_rl.thesis.studies.flights import Flight, cost, equal_size, read_all
+from hybrid_rl.thesis.studies.numbers import banded, rounded
 from hybrid_rl.thesis.studies.unseen import transitions
 from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import Batch, Params

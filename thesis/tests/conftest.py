@@ -3,11 +3,9 @@
 from pathlib import Path
 
 import pytest
+from studied import trained
 
-from hybrid_rl import train
-from hybrid_rl.settings import build as config
-
-SHORT = ["total_steps=12", "episode.steps=12", "num_seeds=2", "compile_cache=null"]
+SHORT = ["total_steps=12", "episode.steps=12", "num_seeds=2"]
 CONTACTS = {
     "map": ("experiment=thesis/fig_5_2", "algo=noise_mapping", "belief.capacity=16"),
     "pose": (
@@ -24,5 +22,5 @@ def contact_runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     """Folders of two runs of 12 decisions with two learners: of a map and of a pose."""
     folder = tmp_path_factory.mktemp("contacts")
     for name, overrides in CONTACTS.items():
-        train.train(config.load([*overrides, *SHORT, f"run_dir={folder / name}"]))
+        trained(*overrides, *SHORT, f"run_dir={folder / name}")
     return {name: folder / name for name in CONTACTS}

@@ -1,20 +1,17 @@
 """The study of active learning: figure 4-1."""
 
-import json
 from typing import Any
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from tiny import call
+from studied import drawn, trained
+from tiny import rows_of
 
-from hybrid_rl import figures, train
-from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.cart_swing_up import CartSwingUp
 from hybrid_rl.models.exact import Exact
 from hybrid_rl.run.saved import load
-from hybrid_rl.settings import build as config
 from hybrid_rl.thesis.studies import active_learning, unseen
 
 SHORT = [
@@ -29,13 +26,7 @@ SHORT = [
     "history.every=30",
     *(f"{name}=90" for name in ("total_steps", "eval_every", "checkpoint_every")),
     "num_seeds=2",
-    "compile_cache=null",
 ]
-
-
-def draw(*arguments: str) -> int:
-    """Exit code of the command."""
-    return call(lambda: command.run(figures.main), "study=active_learning", *arguments)
 
 
 def data(*_: Any) -> unseen.Unseen:
@@ -44,35 +35,6 @@ def data(*_: Any) -> unseen.Unseen:
     x, u = jnp.asarray(rng.normal(size=(50, 4))), jnp.asarray(rng.uniform(-1, 1, (50, 1)))
     batch = unseen.transitions(x, u, jax.vmap(CartSwingUp().dynamics)(x, u))
     return unseen.Unseen(batch, batch, np.array([0.5, 0.7]), np.full((2, 30), 0.95))
-
-
-def test_figure_of_tiny_runs(tmp_path, monkeypatch, capsys) -> None:
-    """Costs are those of the log; the last loss is that of the last model."""
-    monkeypatch.setattr(unseen, "collect", data)
-    monkeypatch.setattr(active_learning, "UPDATES", 200)
-    for level in (0.0, 0.5):
-        folder = tmp_path / ("noise" if level else "none")
-        train.train(config.load([*SHORT, f"noisy.level={level}", f"run_dir={folder}"]))
-    assert draw(f"runs={tmp_path}/no*", "refit=20", f"out={tmp_path}/f.png") == 0
-    numbers = json.loads((tmp_path / "f.json").read_text())
-    lines = (tmp_path / "none" / "metrics.jsonl").read_text().splitlines()
-    rows = [json.loads(line) for line in lines]
-    returns = [row["train/return"] for row in rows if "train/return" in row and row["step"] == 30]
-    one = numbers["methods"]["none"]
-    assert one["area"]["cost"][0] == pytest.approx(np.mean(one["each"]["cost"]), rel=1e-3)
-    first = one["first_cost"]
-    np.testing.assert_allclose(first, np.array(returns) / -30, rtol=1e-3)
-    trained = load(tmp_path / "none")
-    model = trained.controllers["full"].model
-    losses = jax.vmap(lambda params: unseen.loss(model, params, data().box))
-    last = numbers["methods"]["none"]["loss_box"][0][-1]
-    assert last == pytest.approx(losses(trained.params.model).mean(), rel=1e-3)
-    assert set(numbers["differences"]) == {"noise"}
-    assert set(numbers["refit"]) == {"noise", "none"}
-    printed = capsys.readouterr().out
-    assert "exact model: cost 0.6 [0.5, 0.7], upright 100%" in printed
-    assert "noise, 2 seeds: cost " in printed
-    assert "none, fitted again: log10 loss: uniform " in printed
 
 
 def test_the_exact_model_has_no_loss_and_standing_still_has_one() -> None:
@@ -114,16 +76,21 @@ def test_methods_differ_by_a_test_of_their_seeds() -> None:
     }
 
 
-@pytest.mark.parametrize(
-    ("arguments", "line"),
-    [
-        (["runs=nowhere/*"], "runs=nowhere/*: no run there"),
-        (["runs={}", "against=best"], "against=best: no such run; choose one of"),
-    ],
-)
-def test_bad_arguments_are_one_line(tmp_path, capfd, arguments, line) -> None:
-    (tmp_path / "a").mkdir()
-    (tmp_path / "a" / "metrics.jsonl").write_text("{}\n")
-    given = [argument.format(f"{tmp_path}/a") for argument in arguments]
-    assert draw(*given, f"out={tmp_path}/f.png") == 2
-    assert line in capfd.readouterr().err
+def test_figure_of_tiny_runs(tmp_path, monkeypatch) -> None:
+    """Costs are those of the log; the last loss is that of the last model."""
+    monkeypatch.setattr(unseen, "collect", data)
+    monkeypatch.setattr(active_learning, "UPDATES", 200)
+    for name, level in (("none", 0.0), ("noise", 0.5)):
+        trained(*SHORT, f"noisy.level={level}", f"run_dir={tmp_path / name}")
+    numbers = drawn(tmp_path / "f.png", "active_learning", f"runs={tmp_path}/no*", "refit=20")
+    one = numbers["methods"]["none"]
+    assert one["area"]["cost"][0] == pytest.approx(np.mean(one["each"]["cost"]), rel=1e-3)
+    rows = rows_of(tmp_path / "none")
+    returns = [row["train/return"] for row in rows if "train/return" in row and row["step"] == 30]
+    np.testing.assert_allclose(one["first_cost"], np.array(returns) / -30, rtol=1e-3)
+    run = load(tmp_path / "none")
+    model = run.controllers["full"].model
+    losses = jax.vmap(lambda params: unseen.loss(model, params, data().box))
+    assert one["loss_box"][0][-1] == pytest.approx(losses(run.params.model).mean(), rel=1e-3)
+    assert set(numbers["differences"]) == {"noise"}
+    assert set(numbers["refit"]) == {"noise", "none"}

@@ -1,6 +1,5 @@
 """The study of backflips: safety, flights and queries against closed forms, and its command."""
 
-import json
 from pathlib import Path
 
 import jax
@@ -8,23 +7,15 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from scipy.linalg import solve_discrete_are
-from tiny import call, only_line
+from studied import drawn, trained
 
-from hybrid_rl import figures, train
-from hybrid_rl.cli import command
 from hybrid_rl.core.domain import Box
 from hybrid_rl.envs.analytic.lander import ANGLE, DT, Lander
 from hybrid_rl.policies.deterministic import Deterministic
-from hybrid_rl.settings import build as config
 from hybrid_rl.targets.policy_information import PolicyInformation
 from hybrid_rl.thesis.studies import backflips
 from hybrid_rl.training.rollout import evaluation_keys
 from hybrid_rl.types import Params, Spec
-
-
-def draw(*arguments) -> int:
-    """Exit code of the command."""
-    return call(lambda: command.run(figures.main), "study=imitation", *arguments)
 
 
 def test_safety_is_that_of_the_states() -> None:
@@ -76,48 +67,24 @@ def test_the_density_of_a_linear_clone_is_the_squared_distance_plus_one() -> Non
     np.testing.assert_allclose(p, want / want.sum(), rtol=1e-5)
 
 
-@pytest.mark.parametrize(
-    ("line", "label"),
-    [
-        ("", "kle3_imitation"),
-        ("dagger_learner.spacing=1 guarded.level=10.0", "kle3_imitation, V below 10, no spacing"),
-        ("explorer.gain=50.0 explorer.normalise=false", "kle3_imitation, gain 50, variance 0.1"),
-        ("algo=nie dagger_learner.spacing=5", "nie, spacing 5"),
-        ("algo=minie noisy.level=0.5", "minie, noise 0.5"),
-        ("algo=nie env.task=flip", "starts of the flip"),
-    ],
-)
-def test_labels_name_what_differs(line: str, label: str) -> None:
-    composed = config.load(["experiment=thesis/fig_6_9", *line.split()])
-    assert backflips.label_of(composed) == label
-
-
-def test_runs_become_two_figures(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
-) -> None:
-    """Queries three decisions apart at the states that the run visited; other runs are refused."""
+def test_runs_become_two_figures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Queries three decisions apart at the states that the run visited."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(backflips, "LENGTHS", (2, 4))
     monkeypatch.setattr(backflips, "STARTS", 3)
     few = ["total_steps=12", "checkpoint_every=12", "eval_every=12", "log_every=6", "num_seeds=2"]
     asking = ["dagger_learner.length=4", "dagger_learner.spacing=3", "dagger_learner.most=3"]
     line = ["experiment=thesis/fig_6_9", "algo=minie", "policy.hidden=[64]"]
-    line += [*few, *asking, "dagger_learner.better=false", "run_dir=minie", "compile_cache=null"]
-    train.train(config.load(line))
+    trained(*line, *few, *asking, "dagger_learner.better=false", "run_dir=minie")
     (one,) = backflips.explored("minie")
     assert (one.label, one.most, one.asked.tolist()) == ("minie, spacing 3", 3, [3, 3])
     np.testing.assert_array_equal(one.decision, [[0, 3, 6]] * 2)
     np.testing.assert_array_equal(one.x, one.visited[:, [0, 3, 6]])
     assert (one.own > 0).all()
+    rows = {}
     for view in ("backflips", "information"):
-        assert draw(f"view={view}", "runs=minie", f"out={view}.png") == 0
-    numbers = json.loads((tmp_path / "backflips.json").read_text())
-    row = numbers["rows"]["minie, spacing 3"]["3"]
-    assert set(row["success"]) == set(row["turned"]) == {"2", "4"}
-    numbers = json.loads((tmp_path / "information.json").read_text())
-    assert len(numbers["rows"]["minie, spacing 3"]["reference"]["iqm"]) == 3
-    capfd.readouterr()
-    (tmp_path / "other").mkdir()
-    (tmp_path / "other" / "metrics.jsonl").write_text('{"step": 1, "seed": 0, "wall_s": 1}\n')
-    assert draw("view=backflips", "runs=other") == 2
-    assert "needs a run of experiment=thesis/fig_6_9" in only_line(capfd)
+        numbers = drawn(tmp_path / f"{view}.png", "imitation", f"view={view}", "runs=minie")
+        rows[view] = numbers["rows"]["minie, spacing 3"]
+    assert set(rows["backflips"]["3"]["success"]) == {"2", "4"}
+    assert set(rows["backflips"]["3"]["turned"]) == {"2", "4"}
+    assert len(rows["information"]["reference"]["iqm"]) == 3

@@ -1,17 +1,13 @@
 """The study of contact maps: measures by hand, and both views of small runs."""
 
-import json
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
-from tiny import call, only_line
+from studied import drawn
 
-from hybrid_rl import figures
-from hybrid_rl.beliefs.maps.learned import LearnedMap
-from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.contact_plane import ContactPlane
 from hybrid_rl.thesis.studies import contact_maps_picture, contact_poses, contacts, false_contacts
 
@@ -156,44 +152,25 @@ def test_the_entropy_of_poses_is_that_of_their_density(copies) -> None:
     assert contact_poses.entropy_of(np.repeat(theta, copies, 0)) == pytest.approx(wanted, abs=0.3)
 
 
-def draw(*arguments: str | Path) -> int:
-    """Exit code of the command."""
-    return call(lambda: command.run(figures.main), "study=contact_maps", *arguments)
-
-
 def test_maps_of_a_small_run_and_a_map_file(contact_runs: dict[str, Path], tmp_path: Path) -> None:
     """Numbers at each time for both trials, and a map file."""
-    out, run = tmp_path / "map.png", contact_runs["map"]
-    line = (f"runs={run}", "times=0.5,1.2", f"out={out}", f"map_out={tmp_path}/m.npz")
-    assert draw("view=map", *line) == 0
-    numbers = json.loads(out.with_suffix(".json").read_text())
+    line = ("view=map", f"runs={contact_runs['map']}", "times=0.5,1.2")
+    numbers = drawn(tmp_path / "map.png", "contact_maps", *line, f"map_out={tmp_path}/m.npz")
     (one,) = numbers["methods"].values()
     assert numbers["times"][-1] == pytest.approx(1.2)
     assert one["trials"] == 2
     assert 0 < one["cells"]["iqm"][-1] < 0.2
     with np.load(tmp_path / "m.npz") as file:
         assert file["f"].shape == (contacts.GRID, contacts.GRID)
-        if file["f"].max() < 0:
-            with pytest.raises(ValueError, match="no contact"):
-                LearnedMap(str(tmp_path / "m.npz"))
 
 
-def test_poses_of_a_small_run(
-    contact_runs: dict[str, Path], tmp_path: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
-    """Errors of both trials; a run of poses has no map."""
-    out, run = tmp_path / "pose.png", contact_runs["pose"]
-    assert draw("view=pose", f"runs={run}", f"out={out}") == 0
-    numbers = json.loads(out.with_suffix(".json").read_text())
+def test_poses_of_a_small_run(contact_runs: dict[str, Path], tmp_path: Path) -> None:
+    """Errors of both trials."""
+    run = f"runs={contact_runs['pose']}"
+    numbers = drawn(tmp_path / "pose.png", "contact_maps", "view=pose", run)
     (one,) = numbers["methods"].values()
     assert all(0 < error < 1.5 for error in one["position"]["median"])
     assert one["first"]["never"] + sum(each is not None for each in one["first"]["each"]) == 2
     assert len(one["truth_behind"]["each"]) == 2
-    assert draw("view=absence", f"runs={run}", f"out={out}") == 0
-    numbers = json.loads(out.with_suffix(".json").read_text())
+    numbers = drawn(tmp_path / "absence.png", "contact_maps", "view=absence", run)
     assert [len(one["each"]) for one in numbers["kinds"].values()] == [2, 2, 2]
-    capfd.readouterr()
-    assert draw("view=map", f"runs={run}") == 2
-    assert "is no map of contacts" in only_line(capfd)
-    assert draw("view=pose", f"runs={run}", "times=5") == 2
-    assert "times=5: must rise, up to 1.2 s" in only_line(capfd)

@@ -4,7 +4,6 @@ import json
 import re
 import subprocess
 import sys
-import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +11,6 @@ import pytest
 
 from hybrid_rl.list import FIRST
 from hybrid_rl.settings.groups import options
-from scripts import docs
 
 ROOT = Path(__file__).resolve().parents[2]
 NOTEBOOKS = sorted((ROOT / "docs" / "notebooks").glob("*.ipynb"))
@@ -24,13 +22,13 @@ SECTIONS = {  # of the thesis: section -> its subsections
 LAST = {"2": 11, "3": 8, "4": 6, "5": 4, "6": 28, "7": 13}  # chapter of the thesis -> its last eq.
 
 
-def test_every_method_has_one_section():
+def test_every_method_has_one_section_to_which_the_tables_lead():
     """From which scripts/docs.py makes the method's page."""
     page = (ROOT / "docs" / "methods.md").read_text(encoding="utf-8")
-    names = [
-        name for line in re.findall(r"^### (.+)$", page, re.MULTILINE) for name in line.split(", ")
-    ]
-    assert sorted(names) == options("algo")
+    lines = re.findall(r"^### (.+)$", page, re.MULTILINE)
+    assert sorted(name for line in lines for name in line.split(", ")) == options("algo")
+    tables = page.partition("\n## Settings")[0]
+    assert sorted({*re.findall(r"\[`(\w+)[^`]*`\]\(#", tables)}) == options("algo")
 
 
 def test_cited_sections_and_equations_of_the_thesis_exist():
@@ -52,11 +50,6 @@ def test_cited_sections_and_equations_of_the_thesis_exist():
     assert count > 50
 
 
-def test_the_parts_of_a_method_stand_outer_ones_first():
-    names = [name.rpartition(".")[2] for name in docs.parts("ddpg")]
-    assert names[:4] == ["NoisyController", "PolicyController", "TanhGaussian", "DDPG"]
-
-
 def test_the_same_eight_methods_come_first_everywhere():
     """In the listing, in the README and on the page of methods."""
     for name in ("README.md", "docs/methods.md"):
@@ -64,35 +57,6 @@ def test_the_same_eight_methods_come_first_everywhere():
         rows = table.split("\n\n")[0].splitlines()[2:]
         names = [found for row in rows for found in re.findall(r"`(\w+)`", row.split("|")[1])]
         assert names[: len(FIRST)] == list(FIRST), name
-
-
-def test_every_method_in_the_tables_leads_to_its_section():
-    page = (ROOT / "docs" / "methods.md").read_text(encoding="utf-8").partition("\n## Settings")[0]
-    assert sorted({*re.findall(r"\[`(\w+)[^`]*`\]\(#", page)}) == options("algo")
-
-
-def test_a_workflow_on_github_links_the_notebooks_to_binder(tmp_path, monkeypatch):
-    monkeypatch.setattr(docs, "SOURCE", tmp_path)
-    monkeypatch.setenv("GITHUB_REPOSITORY", "somebody/a_fork")
-    docs.copy()
-    for path in NOTEBOOKS:
-        plain, linked = (
-            json.loads((root / "docs" / "notebooks" / path.name).read_text(encoding="utf-8"))
-            for root in (ROOT, tmp_path)
-        )
-        url = f"https://mybinder.org/v2/gh/somebody/a_fork/HEAD?labpath=docs/notebooks/{path.name}"
-        text = "".join(linked["cells"][0].pop("source"))
-        assert text.count(f"\n\n[Run it on Binder]({url})\n\n") == 1
-        assert text.replace(f"[Run it on Binder]({url})\n\n", "") == "".join(
-            plain["cells"][0].pop("source")
-        )
-        assert linked == plain
-
-
-def test_binder_has_a_python_that_the_package_supports():
-    wanted = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    version = (ROOT / ".binder" / "runtime.txt").read_text(encoding="utf-8").split("-")[1].strip()
-    assert f"Programming Language :: Python :: {version}" in wanted["classifiers"]
 
 
 def test_the_page_of_concepts_plans_with_the_adjoint_core():
@@ -155,20 +119,3 @@ def test_a_notebook_runs(path, tmp_path):
         [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True
     )
     assert done.returncode == 0, done.stderr
-
-
-@pytest.mark.parametrize(("mode", "runs"), [([], True), (["fast"], False)])
-def test_the_fast_site_has_the_same_checks_and_runs_no_notebook(mode, runs, monkeypatch):
-    lines = []
-    done = subprocess.CompletedProcess([], 0)
-    monkeypatch.setattr(subprocess, "run", lambda line, cwd: lines.append(line) or done)
-    for step in ("copy", "methods", "reference"):
-        monkeypatch.setattr(docs, step, lambda: None)
-    monkeypatch.setattr(docs.robots, "write", lambda file: None)
-    monkeypatch.setattr(docs, "HTML", ROOT / "none")
-    monkeypatch.setattr(sys, "argv", ["docs.py", *mode])
-    docs.main()
-    (line,) = lines
-    assert "--fail-on-warning" in line
-    assert line[line.index("--builder") + 1] == "html"
-    assert ("nb_execution_mode=off" in line) == (not runs)

@@ -1,6 +1,5 @@
 """The study of Koopman operators: regulators of Van der Pol's oscillator."""
 
-import json
 from types import SimpleNamespace
 from typing import Any
 
@@ -9,10 +8,8 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from scipy.linalg import solve_discrete_are
-from tiny import call
+from studied import drawn
 
-from hybrid_rl import figures
-from hybrid_rl.cli import command
 from hybrid_rl.features.monomials import Monomials
 from hybrid_rl.learners.least_squares import LeastSquares
 from hybrid_rl.learners.regulator import RegulatorLearner
@@ -24,11 +21,6 @@ from hybrid_rl.types import Spec
 
 A = np.array([[1.0, 0.1], [-0.1, 1.1]])  # an unstable spiral
 B = np.array([[0.0], [0.2]])
-
-
-def draw(*arguments) -> int:
-    """Exit code of the command."""
-    return call(lambda: command.run(figures.main), "study=koopman", *arguments)
 
 
 def linear_world() -> Any:
@@ -122,18 +114,16 @@ def test_ratios_are_of_means_over_starts() -> None:
     assert one["optimum"] == pytest.approx(1 / 3)
 
 
-def test_the_view_of_control_writes_its_numbers(tmp_path, capsys, monkeypatch) -> None:
+def test_the_view_of_control_writes_its_numbers(tmp_path, monkeypatch) -> None:
     """With few samples and short paths; u is clipped nowhere."""
     monkeypatch.setattr(oscillator, "RANGES", (oscillator.INSIDE,))
     monkeypatch.setattr(oscillator, "STEPS", 60)
     monkeypatch.setattr(oscillator, "HORIZONS", (50, 100))
-    out = tmp_path / "f.png"
-    assert draw("view=control", "samples=200", "draws=2", "starts=3", f"out={out}") == 0
-    numbers = json.loads(out.with_suffix(".json").read_text())
+    given = ("view=control", "samples=200", "draws=2", "starts=3")
+    numbers = drawn(tmp_path / "f.png", "koopman", *given)
     each = numbers["by_data"]["2.5, starts 2"]
     assert set(each) == {"50", "100"}
     for one in each.values():
         assert len(one["Koopman"]["cost"]) == 2
         assert 0 < one["optimum"] <= min(1, *one["Koopman"]["cost"])
     assert np.shape(numbers["rates_of_A"]["2.5, starts 2"]["real"]) == (2, 4)
-    assert "T_L 100: Koopman cost" in capsys.readouterr().out

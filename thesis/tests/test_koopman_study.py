@@ -6,15 +6,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from tiny import call
+from studied import code, drawn, trained
 
-from hybrid_rl import figures, train
-from hybrid_rl.analysis import drawing, recorded
+from hybrid_rl.analysis import drawing
 from hybrid_rl.analysis.results import RunFolder
-from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.quadcopter_se3 import DT
-from hybrid_rl.errors import UsageError
-from hybrid_rl.settings import build as config
 from hybrid_rl.thesis.studies import (
     embeddings,
     fall_frames,
@@ -32,13 +28,7 @@ SHORT = [
     *(f"{name}=200" for name in ("total_steps", "episode.steps", "eval_every", "checkpoint_every")),
     "num_seeds=2",
     "log_every=100",
-    "compile_cache=null",
 ]
-
-
-def draw(*arguments) -> int:
-    """Exit code of the command."""
-    return call(lambda: command.run(figures.main), "study=koopman", *arguments)
 
 
 def test_settled_is_the_start_of_the_last_stretch_below() -> None:
@@ -97,19 +87,6 @@ def test_log_det_of_the_information_by_hand() -> None:
     np.testing.assert_allclose(falls.trace(s), [[4, 13]])
 
 
-def test_other_starts_are_an_error_in_one_line(tmp_path) -> None:
-    """Other trials, other sizes; sensor noise of 0.1 explains a difference of 0.1."""
-    a, b = tmp_path / "a", tmp_path / "b"
-    error = np.zeros((2, 11))
-    moved = fall(error)
-    moved.obs[1, 0, 3] = 0.1
-    with pytest.raises(UsageError, match=r"b: trial 1 starts elsewhere than in .*a; train with"):
-        falls.check_starts([fall(error), moved], [a, b])
-    with pytest.raises(UsageError, match=r"has 2 trials of 8 decisions where .* 2 trials of 10"):
-        falls.check_starts([fall(error), fall(error[:, :9])], [a, b])
-    falls.check_starts([fall(error), moved._replace(std=0.1)], [a, b])
-
-
 def test_logged_twist_holds_between_two_rows(tmp_path) -> None:
     """Each row is the mean of the decisions before it."""
     rows = [
@@ -120,44 +97,6 @@ def test_logged_twist_holds_between_two_rows(tmp_path) -> None:
     (tmp_path / "metrics.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
     right = [[2, 2, 4, 4], [12, 12, 14, 14]]
     np.testing.assert_array_equal(falls.logged(RunFolder(tmp_path), (0, 1), 4), right)
-
-
-def test_runs_become_falls(tmp_path, capsys, monkeypatch) -> None:
-    """One run under two names."""
-    direct, babble = (tmp_path / "runs" / f"koopman_{name}" for name in ("direct", "babble"))
-    train.train(config.load([*SHORT, "algo=koopman_direct", f"run_dir={direct}"]))
-    shutil.copytree(direct, babble)
-    settings = (babble / "config.yaml").read_text()
-    (babble / "config.yaml").write_text(settings.replace("koopman_direct", "koopman_babble"))
-    out = tmp_path / "f.png"
-    runs = f"runs={tmp_path}/runs/*"
-    both = falls.falls(f"{tmp_path}/runs/*")
-    monkeypatch.setattr(falls_picture, "falls", lambda pattern: both)
-    assert draw("view=falls", runs, f"out={out}") == 0
-    numbers = json.loads(out.with_suffix(".json").read_text())["methods"]
-    assert set(numbers) == {"koopman_direct", "koopman_babble"}
-    assert both[0].seconds > 0
-    means = both[0].error[:, 1:].reshape(2, 2, 100).mean(-1)
-    twist = falls.logged(RunFolder(direct), (0, 1), 200)[:, ::100]
-    np.testing.assert_allclose(means, twist, rtol=1e-4)
-    u = 6 * both[1].action
-    assert numbers["koopman_direct"]["rms_u"] == pytest.approx(np.sqrt((u**2).mean()), rel=1e-3)
-    assert "koopman_babble, 2 trials: at rest by 1 s 0.0%" in capsys.readouterr().out
-    assert draw("view=initial", runs, f"out={out}") == 0
-    monkeypatch.undo()
-    assert draw("view=falls", f"out={out}") == 2
-    assert "runs: not given; give runs=" in capsys.readouterr().err
-
-
-def test_labels_name_the_settings_that_differ(tmp_path) -> None:
-    """Or the folders, where nothing differs."""
-    for name, twist in (("a", 0), ("b", 1), ("c", 1)):
-        (tmp_path / name).mkdir()
-        (tmp_path / name / "config.yaml").write_text(f"algo: k\nenv: {{twist: {twist}}}\n")
-    a, b, c = (tmp_path / name for name in "abc")
-    assert recorded.labels([a]) == ["k"]
-    assert recorded.labels([a, b]) == ["k twist=0", "k twist=1"]
-    assert recorded.labels([b, c]) == [str(b), str(c)]
 
 
 def sine(delay: float, dt: float = 1 / 30, shift: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
@@ -200,30 +139,6 @@ def test_rmse_of_a_late_sine_in_closed_form() -> None:
     np.testing.assert_allclose(noisy, right, rtol=0.05)
 
 
-def test_tracks_become_numbers_and_a_picture(tmp_path, monkeypatch, capsys) -> None:
-    """A late method and an exact one; numbers of each trial and their IQM."""
-    (late, reference), (exact, _) = sine(0.1), sine(0.0)
-    action, rate = np.full((1, 400, 2), 0.5), np.array([3.0])
-    tracks = {
-        "late": Track("late", late, reference, action, rate, 0.0, 1 / 30),
-        "exact": Track("exact", exact + 0.003, reference, action, rate, 0.0, 1 / 30),
-    }
-    of = SimpleNamespace(config=SimpleNamespace(task="sprk_sand"))
-    monkeypatch.setattr(tracking, "find", lambda pattern: list(tracks))
-    monkeypatch.setattr(tracking, "labels", lambda folders: folders)
-    monkeypatch.setattr(tracking, "read", lambda folder, *tasks: of)
-    monkeypatch.setattr(tracking, "of", lambda run, label: tracks[label])
-    out = tmp_path / "f.png"
-    assert draw("view=tracking", "runs=any", f"out={out}") == 0
-    numbers = json.loads(out.with_suffix(".json").read_text())["methods"]
-    assert numbers["late"]["lag_ms"][0] == pytest.approx(100, abs=1)
-    assert numbers["exact"]["rmse_mm"][0] == pytest.approx(3 * np.sqrt(2), rel=1e-3)
-    assert numbers["exact"]["rms_action"][0] == 0.5
-    line = capsys.readouterr().out.splitlines()[1]
-    assert line.startswith("exact, 1 trial, 0 lost: RMSE 4.24 [4.24, 4.24] mm, lag ")
-    assert line.endswith("correlation 1.0000, 1.0000")
-
-
 def write_run(folder, task: str, success: np.ndarray) -> None:
     """A run with evaluations of success [G, S], every 200 decisions."""
     folder.mkdir(parents=True)
@@ -234,21 +149,6 @@ def write_run(folder, task: str, success: np.ndarray) -> None:
         for seed, value in enumerate(each)
     ]
     (folder / "metrics.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
-
-
-def test_carts_are_stabilised_when_all_episodes_are_whole(tmp_path, capsys) -> None:
-    """Trials after 1, 3 and 3 iterations, and one never."""
-    success = np.array([[1, 0, 0.8, 0], [0, 0, 0.8, 0], [1, 1, 1, 0.8]])
-    write_run(tmp_path / "noise_32", "cart_pendulum", success)
-    write_run(tmp_path / "linear_5", "cart_pendulum", np.ones((3, 4)))
-    out = tmp_path / "f.png"
-    assert draw("view=embedding", f"runs={tmp_path}/*_*", f"out={out}") == 0
-    numbers = json.loads(out.with_suffix(".json").read_text())["cart_pendulum"]
-    assert numbers["noise_32"]["iterations_of_trials"] == [1, 3, 3, None]
-    assert numbers["noise_32"]["iterations"] == [3, 1, 3]
-    assert numbers["noise_32"]["share_by_100"] == 0.75
-    line = "cart_pendulum linear_5, 4 trials: stabilised after 1 [1, 1] iterations, 100% by 100"
-    assert line in capsys.readouterr().out
 
 
 def test_distances_of_arms_by_hand(tmp_path, monkeypatch) -> None:
@@ -262,9 +162,57 @@ def test_distances_of_arms_by_hand(tmp_path, monkeypatch) -> None:
     one = numbers["two_link"]["gain_32"]
     assert one["distance"][0] == [5, 0]
     assert one["share_within"] == [0, 1]
-    assert koopman.summary(numbers) == [
-        "two_link gain_32, 1 trial: last distance 0 [0, 0] rad, within 0.05 rad 100% at the end"
-    ]
+
+
+def test_runs_become_falls(tmp_path, monkeypatch) -> None:
+    """One run under two names."""
+    direct, babble = (tmp_path / "runs" / f"koopman_{name}" for name in ("direct", "babble"))
+    trained(*SHORT, "algo=koopman_direct", f"run_dir={direct}")
+    shutil.copytree(direct, babble)
+    settings = (babble / "config.yaml").read_text()
+    (babble / "config.yaml").write_text(settings.replace("koopman_direct", "koopman_babble"))
+    runs = f"{tmp_path}/runs/*"
+    both = falls.falls(runs)
+    monkeypatch.setattr(falls_picture, "falls", lambda pattern: both)
+    numbers = drawn(tmp_path / "f.png", "koopman", "view=falls", f"runs={runs}")["methods"]
+    assert set(numbers) == {"koopman_direct", "koopman_babble"}
+    assert both[0].seconds > 0
+    means = both[0].error[:, 1:].reshape(2, 2, 100).mean(-1)
+    twist = falls.logged(RunFolder(direct), (0, 1), 200)[:, ::100]
+    np.testing.assert_allclose(means, twist, rtol=1e-4)
+    u = 6 * both[1].action
+    assert numbers["koopman_direct"]["rms_u"] == pytest.approx(np.sqrt((u**2).mean()), rel=1e-3)
+    assert code("koopman", "view=initial", f"runs={runs}", f"out={tmp_path}/f.png") == 0
+
+
+def test_tracks_become_numbers_and_a_picture(tmp_path, monkeypatch) -> None:
+    """A late method and an exact one; numbers of each trial."""
+    (late, reference), (exact, _) = sine(0.1), sine(0.0)
+    action, rate = np.full((1, 400, 2), 0.5), np.array([3.0])
+    tracks = {
+        "late": Track("late", late, reference, action, rate, 0.0, 1 / 30),
+        "exact": Track("exact", exact + 0.003, reference, action, rate, 0.0, 1 / 30),
+    }
+    of = SimpleNamespace(config=SimpleNamespace(task="sprk_sand"))
+    monkeypatch.setattr(tracking, "find", lambda pattern: list(tracks))
+    monkeypatch.setattr(tracking, "labels", lambda folders: folders)
+    monkeypatch.setattr(tracking, "read", lambda folder, *tasks: of)
+    monkeypatch.setattr(tracking, "of", lambda run, label: tracks[label])
+    numbers = drawn(tmp_path / "f.png", "koopman", "view=tracking", "runs=any")["methods"]
+    assert numbers["late"]["lag_ms"][0] == pytest.approx(100, abs=1)
+    assert numbers["exact"]["rmse_mm"][0] == pytest.approx(3 * np.sqrt(2), rel=1e-3)
+    assert numbers["exact"]["rms_action"][0] == 0.5
+
+
+def test_carts_are_stabilised_when_all_episodes_are_whole(tmp_path) -> None:
+    """Trials after 1, 3 and 3 iterations, and one never."""
+    success = np.array([[1, 0, 0.8, 0], [0, 0, 0.8, 0], [1, 1, 1, 0.8]])
+    write_run(tmp_path / "noise_32", "cart_pendulum", success)
+    given = ("view=embedding", f"runs={tmp_path}/*_*")
+    numbers = drawn(tmp_path / "f.png", "koopman", *given)["cart_pendulum"]["noise_32"]
+    assert numbers["iterations_of_trials"] == [1, 3, 3, None]
+    assert numbers["iterations"] == [3, 1, 3]
+    assert numbers["share_by_100"] == 0.75
 
 
 def test_a_fall_is_a_strip_of_attitudes_with_heights(tmp_path, monkeypatch) -> None:
@@ -275,17 +223,15 @@ def test_a_fall_is_a_strip_of_attitudes_with_heights(tmp_path, monkeypatch) -> N
     obs[0, 400:, 3:12] = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]]).ravel()  # on its side
     fall = SimpleNamespace(label="mine", obs=obs)
     monkeypatch.setattr(fall_frames, "falls", lambda pattern: [fall])
-    drawn = []
+    drawings = []
 
     def frames(scene, poses, width, height) -> np.ndarray:
-        drawn.append(poses)
+        drawings.append(poses)
         return np.zeros((len(poses), height, width, 3), np.uint8)
 
     monkeypatch.setattr(drawing, "frames", frames)
-    out = tmp_path / "f.png"
-    assert draw("view=frames", "runs=any", f"out={out}") == 0
-    numbers = json.loads(out.with_suffix(".json").read_text())
+    numbers = drawn(tmp_path / "f.png", "koopman", "view=frames", "runs=any")
     np.testing.assert_allclose(numbers["height"]["mine"], [-t for t in numbers["time"]], atol=0.01)
-    (poses,) = drawn
+    (poses,) = drawings
     np.testing.assert_array_equal(poses[:, :3], np.broadcast_to(poses[0, :3], poses[:, :3].shape))
     assert not np.allclose(poses[0], poses[-1])

@@ -81,6 +81,7 @@ def test_a_comment_says_which_tasks_the_parts_of_a_method_need(algo: str) -> Non
     assert listed.mark(file("algo", algo)) == needs(composed)
 
 
+@pytest.mark.turns(2)
 @pytest.mark.parametrize("algo", sorted({*RUN, *listed.listing(THESIS)["algo"]}))
 def test_every_method_learns(algo: str, tmp_path: Path) -> None:
     """Eight decisions of two learners, with learning, all finite; of some only shapes of one."""

@@ -4,15 +4,16 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+import yaml
 from hydra import compose, initialize_config_dir
 
 from hybrid_rl.settings.build import CONF, READ
 from hybrid_rl.settings.complete import complete, keys
 from hybrid_rl.settings.groups import groups
 from hybrid_rl.settings.words import forced, raw_values
-from scripts.pages import printed
+from scripts.pages.values import RESULTS
 
-ENTRIES = printed.entries()
+ENTRIES = yaml.safe_load((RESULTS / "printed.yaml").read_text(encoding="utf-8"))
 ROWS = [(title, name) for title, c in ENTRIES["chapters"].items() for name in c["rows"]]
 
 

@@ -66,7 +66,7 @@ class ModelState:
     model: Any
     reward: Any  # None without a reward
     optimiser: Any
-    held_out: Any = None  # HeldOut, or None without
+    held_out: PyTree = None  # HeldOut, or None without
 
 
 @part

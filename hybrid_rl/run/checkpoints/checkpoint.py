@@ -23,8 +23,6 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
-import jax
-
 from hybrid_rl.errors import CheckpointError
 from hybrid_rl.files.atomic import own_folder, sync
 from hybrid_rl.run.checkpoints import leaves
@@ -35,11 +33,6 @@ from hybrid_rl.types import PyTree
 KEEP = 2  # complete checkpoints
 ATTEMPTS = 100  # to read a folder whose checkpoints another process replaces
 NAME = re.compile(r"(\d+)|\.(\d+)\.replaced(?:\.\d+)?\.tmp")  # of a finished checkpoint
-
-
-def nbytes(state: PyTree) -> int:
-    """Size of the arrays of `state` [bytes]; that of its checkpoint, to a few kB."""
-    return sum(leaf.size * leaf.dtype.itemsize for leaf in jax.tree.leaves(state))
 
 
 def steps(folder: Path) -> list[int]:
@@ -78,10 +71,7 @@ def save(
 
     Checkpoints beyond `step` are deleted, too: the run was resumed from an earlier one. Only
     checkpoints in `known` are deleted, as another process wrote the others; None: all of them.
-    meta: values that JSON can represent.
-
-    Raises:
-        CheckpointError: if it cannot be written; earlier checkpoints stay.
+    meta: values that JSON can represent. After a CheckpointError earlier checkpoints are as before.
     """
     arrays, kinds = leaves.flatten(state)
     texts = {"meta.json": json.dumps(meta, indent=1), "leaves.json": json.dumps(kinds, indent=0)}
@@ -100,13 +90,12 @@ def save(
             raise OSError("its folder was moved or deleted")
         integrity.write_manifest(draft)
         path = _rename(draft, folder / str(step))
-    except Exception as problem:
+    except BaseException as problem:
         line = _refusal(folder, step, problem)
         _discard(draft)
+        if not isinstance(problem, Exception):  # Ctrl-C and the like
+            raise
         raise CheckpointError(line) from problem
-    except BaseException:  # Ctrl-C and the like
-        _discard(draft)
-        raise
     _prune(folder, step, keep, known)
     return path
 
@@ -120,10 +109,6 @@ def restore(
     returns), of all leaves or of some; they are arrays on the default device. notes: one line for
     each checkpoint that was skipped. Another process may write checkpoints to `folder` and delete
     older ones meanwhile.
-
-    Raises:
-        CheckpointError: if none is sound.
-        MisfitError: if the checkpoint lacks a leaf of `like`, or has it in another shape.
     """
     for _ in range(ATTEMPTS):
         checkpoints = _finished(folder)
@@ -141,9 +126,8 @@ def restore(
                 return candidate, *read, notes
             notes.append(f"checkpoint {candidate} is skipped: {flaw}")
         else:
-            if not notes:
-                raise CheckpointError(f"{folder} holds no checkpoint")
-            raise CheckpointError(f"{folder} holds no sound checkpoint: " + "; ".join(notes))
+            flaw = f"no sound checkpoint: {'; '.join(notes)}" if notes else "no checkpoint"
+            raise CheckpointError(f"{folder} holds {flaw}")
     raise CheckpointError(f"{folder}: checkpoints are replaced faster than they can be read")
 
 
@@ -186,7 +170,7 @@ def _recover(folder: Path) -> None:
 
 
 def leftovers(folder: Path) -> list[Path]:
-    """What neither a checkpoint nor its writer left in `folder` but could not be deleted."""
+    """Files in `folder` that belong to no checkpoint and could not be deleted."""
     return sorted(folder.glob(".*.tmp"))
 
 
@@ -224,11 +208,11 @@ def _prune(folder: Path, newest: int, keep: int, known: Collection[int] | None) 
         shutil.rmtree(path, ignore_errors=True)
 
 
-def _refusal(folder: Path, step: int, problem: Exception) -> str:
+def _refusal(folder: Path, step: int, problem: BaseException) -> str:
     """One line for a checkpoint that could not be written."""
     reason = " ".join(str(problem).split()) or type(problem).__name__
     if system := re.search(r"([^:]+) \[os_error_code=", reason):  # the end of TensorStore's message
         reason = system[1].strip()
     before = [s for s in steps(folder) if not integrity.verify(folder / str(s), False)]
-    last = f"checkpoint {before[-1]} is whole" if before else "there is no earlier one"
+    last = f"checkpoint {before[-1]} is intact" if before else "there is no earlier one"
     return f"checkpoint {step} in {folder} was not written: {reason}; {last}"

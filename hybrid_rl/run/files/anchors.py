@@ -1,7 +1,6 @@
 """YAML in which a part that occurs several times is written once, with an anchor by its key."""
 
 import re
-from collections import Counter
 from typing import Any
 
 import yaml
@@ -31,16 +30,13 @@ class _Part(dict):
 
 
 class _Dumper(yaml.SafeDumper):
-    """Names an anchor by the key of the part that it marks: model, model_2, ..."""
+    """Names an anchor by the key of the part that it marks: model_1, policy_2, ..."""
 
-    def __init__(self, *arguments: Any, **settings: Any) -> None:
-        super().__init__(*arguments, **settings)
-        self.anchored: Counter[str] = Counter()  # key -> number of its anchors
+    ANCHOR_TEMPLATE = "%d"  # the number of an anchor
 
     def generate_anchor(self, node: Any) -> str:
-        key = re.sub(r"\W", "_", node.key)
-        self.anchored[key] += 1
-        return key if self.anchored[key] == 1 else f"{key}_{self.anchored[key]}"
+        name = re.sub(r"\W", "_", node.key)
+        return f"{name}_{super().generate_anchor(node)}"
 
     def part(self, data: _Part) -> yaml.Node:
         node: Any = self.represent_dict(data)

@@ -31,7 +31,7 @@ def write_manifest(folder: Path) -> None:
 
 
 def verify(folder: Path, contents: bool = True) -> str | None:
-    """Why `folder` is not what `write_manifest` left, or None.
+    """The first difference of `folder` from its manifest; None if there is none.
 
     contents: read every byte, not only sizes.
     """
@@ -56,7 +56,7 @@ def verify(folder: Path, contents: bool = True) -> str | None:
 
 
 def _plain(folder: Path, name: str) -> bool:
-    """Whether `name` lies below `folder`, also behind links, and is a plain file if it is there."""
+    """True if `name` lies below `folder`, also behind links, and is a plain file if it is there."""
     if "\0" in name:
         return False
     path = Path(os.path.realpath(folder / name))

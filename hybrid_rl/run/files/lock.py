@@ -1,23 +1,24 @@
 """A run folder belongs to one process at a time.
 
-While a process trains, the folder holds the file `lock`, which the operating system locks (flock)
-and which names the process. The system releases the lock when the process ends, however it ends,
-so a file that a killed process left behind locks nothing.
+While a process trains, the folder holds the file `lock`, which the operating system locks and which
+names the process. The system releases it when the process ends, however it ends, so a file that a
+killed process left behind locks nothing.
 """
 
 import errno
-import fcntl
 import os
 import socket
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from filelock import FileLock, Timeout
+
 from hybrid_rl.errors import UsageError
-from hybrid_rl.files.atomic import own_file
+from hybrid_rl.files.atomic import open_own, refuse_link
 
 LOCK = "lock"
-NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.EINVAL)  # of some network disks
+NO_LOCKS = (errno.ENOLCK, errno.EOPNOTSUPP, errno.EINVAL)  # of some network disks
 
 
 @contextmanager
@@ -26,48 +27,30 @@ def lock(folder: Path, key: str) -> Iterator[Path]:
 
     key: the argument that named the folder.
     """
-    path = folder / LOCK
-    handle = _open(path, key)
+    path, flaw = folder / LOCK, ""
+    held = FileLock(path, timeout=0)
     try:
-        with suppress(OSError):  # on a full disk the file stays empty
-            os.ftruncate(handle, 0)
-            os.write(handle, f"process {os.getpid()} on {socket.gethostname()}\n".encode())
+        folder.mkdir(parents=True, exist_ok=True)
+        refuse_link(path)
+        held.acquire()
+        with suppress(OSError), open_own(path, "w") as file:  # on a full disk it stays empty
+            file.write(f"process {os.getpid()} on {socket.gethostname()}\n")
+    except Timeout:
+        with suppress(OSError):  # which its holder has just deleted
+            flaw = path.read_text(errors="replace").strip()
+        flaw = f"is being written by {flaw or 'another process'}; wait for it, or stop it"
+    except OSError as error:
+        if error.errno not in NO_LOCKS:
+            flaw = f"cannot be written to ({error.strerror})"
+    if flaw:
+        raise UsageError(f"{key}={folder}: {flaw}")
+    mine = path.stat() if held.is_locked else None
+    if mine is None:
+        print(f"{folder}: this disk has no locks; let no other process write there")
+    try:
         yield folder
     finally:
         with suppress(OSError):
-            if os.path.samestat(os.fstat(handle), path.stat()):  # the folder may have been moved
+            if mine and os.path.samestat(mine, path.stat()):  # the folder may have been moved
                 path.unlink()
-        os.close(handle)
-
-
-def _open(path: Path, key: str) -> int:
-    """A handle of the lock file at `path`, locked."""
-    while True:
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            handle = own_file(path, os.O_RDWR | os.O_CREAT)
-        except (OSError, ValueError) as error:  # ValueError: of a name that no file has
-            if isinstance(error, UsageError):
-                raise
-            why = getattr(error, "strerror", error)
-            raise UsageError(f"{key}={path.parent}: cannot be written to ({why})") from error
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            if os.path.samestat(os.fstat(handle), path.stat()):
-                return handle
-        except FileNotFoundError:  # the previous holder has just deleted it
-            pass
-        except BlockingIOError:
-            holder = os.read(handle, 200).decode(errors="replace").strip() or "another process"
-            os.close(handle)
-            raise UsageError(
-                f"{key}={path.parent}: is being written by {holder}; wait for it, or stop it"
-            ) from None
-        except OSError as error:
-            if error.errno not in NO_LOCKS:
-                os.close(handle)
-                error.filename = str(path)
-                raise
-            print(f"{path.parent}: this disk has no locks; let no other process write there")
-            return handle
-        os.close(handle)
+        held.release()

@@ -8,6 +8,7 @@ import json
 import os
 import stat
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -28,10 +29,11 @@ def open_file(file: Path) -> BinaryIO:
         handle = os.open(file, os.O_RDONLY | NO_WAIT)
         if stat.S_ISREG(os.fstat(handle).st_mode):
             return os.fdopen(handle, "rb")
+        os.close(handle)
+        flaw = "it is no plain file"
     except OSError as error:
-        raise UsageError(f"{file}: cannot be read ({error.strerror})") from error
-    os.close(handle)
-    raise UsageError(f"{file}: cannot be read (it is no plain file)")
+        flaw = error.strerror
+    raise UsageError(f"{file}: cannot be read ({flaw})")
 
 
 def text(file: Path, most: int = TEXT) -> str:
@@ -62,11 +64,7 @@ def lines(file: Path, most: int | None = None) -> Iterator[bytes]:
 
 
 def from_json(content: str | bytes) -> Any:
-    """What a text of JSON holds.
-
-    Raises:
-        ValueError: if it is none, or nested too deeply.
-    """
+    """The value of a text in JSON; ValueError if it is none, or nested too deeply."""
     try:
         return json.loads(content)
     except RecursionError as error:
@@ -75,38 +73,36 @@ def from_json(content: str | bytes) -> Any:
 
 def json_file(file: Path) -> dict[str, Any]:
     """The group of keys in a file of JSON."""
-    content = text(file)
-    try:
+    content, values = text(file), None
+    with suppress(ValueError):
         values = from_json(content)
-    except ValueError as error:
-        raise UsageError(f"{file}: is not JSON") from error
     if not isinstance(values, dict):
-        raise UsageError(f"{file}: is no group of keys")
+        raise UsageError(f"{file}: is not JSON, or no group of keys")
     return values
 
 
 def yaml_file(file: Path, load: Callable[[str], Any]) -> Any:
-    """What `load` makes of the text of a YAML file."""
+    """The result of `load` for the text of a YAML file."""
     content = text(file, YAML)
     try:
-        _measure(content)
-        return load(content)
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        line = f"line {mark.line + 1}" if mark else "it"
-        raise UsageError(f"{file}: {line} is no YAML") from error
+        flaw = _flaw(content)
+        if not flaw:
+            return load(content)
     except yaml.YAMLError as error:
-        raise UsageError(f"{file}: is no text in YAML") from error
+        mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
+        flaw = f"line {mark.line + 1} is no YAML" if mark else "is no text in YAML"
     except (ValueError, RecursionError) as error:
-        raise UsageError(f"{file}: {str(error).partition(chr(10))[0]}") from error
+        flaw = str(error).partition("\n")[0]
+    raise UsageError(f"{file}: {flaw}")
 
 
-def _measure(content: str) -> None:
-    """Raise ValueError for YAML that would become too large, or more than plain values."""
+def _flaw(content: str) -> str:
+    """The reason for which YAML is refused: too large, or more than plain values; "" if none."""
     sizes = [0]  # values in each open group; the first counts the whole file
     anchors: list[str | None] = []  # of each open group
     known: dict[str, int] = {}  # anchor -> values below it
     for event in yaml.parse(content, Loader):
+        line, word = f"line {event.start_mark.line + 1}", getattr(event, "value", "")
         match event:
             case yaml.CollectionStartEvent():
                 sizes.append(1)
@@ -116,26 +112,22 @@ def _measure(content: str) -> None:
                 sizes[-1] += size
                 if anchor:
                     known[anchor] = size
+            case yaml.AliasEvent() if event.anchor not in known:
+                return f"*{event.anchor} refers to itself, or to nothing"
             case yaml.AliasEvent():
-                if event.anchor not in known:
-                    raise ValueError(f"*{event.anchor} refers to itself, or to nothing")
                 sizes[-1] += known[event.anchor]
             case yaml.ScalarEvent():
                 if event.anchor:
                     known[event.anchor] = 1
                 sizes[-1] += 1
-                _check_scalar(event)
+        if "${" in word:
+            return f"{line}: {word} is an interpolation; it must be a plain value"
+        if word == "<<":
+            return f"{line} is no YAML of training (<< merges keys)"
         if getattr(event, "tag", None) not in (None, "!"):
-            raise ValueError(f"line {event.start_mark.line + 1} is no YAML of training (a tag)")
+            return f"{line} is no YAML of training (a tag)"
         if len(sizes) > DEEPEST:
-            raise ValueError(f"line {event.start_mark.line + 1} is nested too deeply")
+            return f"{line} is nested too deeply"
         if sizes[-1] > VALUES:
-            raise ValueError(f"holds more than {VALUES:,} values")
-
-
-def _check_scalar(event: Any) -> None:
-    line = f"line {event.start_mark.line + 1}"
-    if event.value == "<<":
-        raise ValueError(f"{line} is no YAML of training (<< merges keys)")
-    if "${" in event.value:
-        raise ValueError(f"{line}: {event.value} is an interpolation; it must be a plain value")
+            return f"holds more than {VALUES:,} values"
+    return ""

@@ -1,60 +1,90 @@
-"""The records of a run: metrics.jsonl, tensorboard/, summary.json, and loggers.
+"""The records of a run: metrics.jsonl, summary.json, and loggers, of which TensorBoard's is one.
 
 A checkpoint stores the length of metrics.jsonl at that time; a resumed run truncates the file to
 that length, so that it has every row exactly once.
 """
 
 import json
-from collections.abc import Sequence
+import os
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Self
 
 import numpy as np
 
+from hybrid_rl.errors import CheckpointError
+from hybrid_rl.files.atomic import open_own
 from hybrid_rl.run.files.integrity import write_text
-from hybrid_rl.run.logs.loggers import Lines, Logger
-from hybrid_rl.run.logs.records import json_value
+from hybrid_rl.run.files.reading import lines
+from hybrid_rl.run.logs.loggers import KINDS, Begun, Logger
+from hybrid_rl.run.logs.records import Row, json_value, row_of
 
 
 class RunLog:
-    """Writes rows of numbers to a run folder, which exists; `loggers` get them, too."""
+    """Writes rows of numbers to a run folder, which exists, and to the loggers `names`.
 
-    def __init__(self, run_dir: Path, seeds: Sequence[int], loggers: Sequence[Logger] = ()) -> None:
-        from hybrid_rl.run.logs.tensorboard import TensorBoard  # 0.2 s
+    config: settings of the run, for loggers. on_row: a function that gets the rows, too.
+    """
 
-        self.run_dir = run_dir
-        self._lines = Lines(run_dir)
-        board = TensorBoard(run_dir, seeds, self._lines.check)
-        self._loggers: tuple[Logger, ...] = (self._lines, board, *loggers)
+    def __init__(
+        self,
+        run_dir: Path,
+        seeds: Sequence[int],
+        config: dict[str, Any] | None = None,
+        names: Sequence[str] = (),
+        on_row: Callable[[Row], Any] | None = None,
+    ) -> None:
+        self.run_dir, self.path = run_dir, run_dir / "metrics.jsonl"
+        self._file = open_own(self.path)
+        self._begun, self._names, self._on_row = Begun(run_dir, seeds, config or {}), names, on_row
+        self._loggers: list[Logger] = []  # opened by the first row
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
-        for each in reversed(self._loggers):
-            each.close()
+        for logger in reversed(self._loggers):
+            logger.close()
+        self._file.close()
 
-    def write(self, rows: list[dict[str, Any]]) -> None:
-        """Append rows {"step", "seed", "wall_s", name: number or word, ...}.
-
-        Raises:
-            CheckpointError: before a seed's first row, as `flush`.
-        """
+    def write(self, rows: Sequence[Row]) -> None:
+        """Append rows {"step", "seed", "wall_s", name: number or word, ...}."""
         for row in rows:
-            plain = {n: v if isinstance(v, str) else number(v) for n, v in row.items()}
+            if not self._loggers:
+                self._open()
+            plain = {name: v if isinstance(v, str) else number(v) for name, v in row.items()}
             plain["wall_s"] = round(float(row["wall_s"]), 3)
+            self._file.write(json.dumps(plain, allow_nan=False).encode("ascii") + b"\n")
+            self._file.flush()
             for logger in self._loggers:
-                logger.write(plain)
+                logger(plain)
+            if self._on_row is not None:
+                self._on_row(plain)
+
+    def _open(self) -> None:
+        from hybrid_rl.run.logs.tensorboard import TensorBoard  # 0.2 s
+
+        self._check()
+        for kind in (TensorBoard, *(KINDS[name] for name in self._names)):
+            self._loggers.append(kind(self._begun))
+        self._begun = self._begun._replace(rows=())
+
+    def _check(self) -> None:
+        """Raise CheckpointError if metrics.jsonl is no longer the file that is open here."""
+        ours = os.fstat(self._file.fileno())
+        if not self.path.exists() or not os.path.samestat(self.path.stat(), ours):
+            raise CheckpointError(
+                f"{self.path}: moved, deleted or replaced while the run wrote it; the run has "
+                "stopped, resume it where its folder is now"
+            )
 
     def flush(self) -> int:
-        """Force all rows to the disk; returns the size of metrics.jsonl [bytes], for `rewind`.
-
-        Raises:
-            CheckpointError: if the folder is no longer where it was.
-        """
+        """Force all rows to the disk; returns the size of metrics.jsonl [bytes], for `rewind`."""
+        self._check()
+        os.fsync(self._file.fileno())
         for logger in self._loggers:
             logger.flush()
-        return self._lines.size
+        return self._file.tell()
 
     def rewind(self, offset: int, step: int) -> list[str]:
         """Delete what was written after the checkpoint at `step`; call it before `write`.
@@ -62,14 +92,15 @@ class RunLog:
         offset: [bytes] that `flush` returned then. Returns one line for each difference from the
         state at the checkpoint.
         """
-        rows = self._lines.cut(offset)
+        whole = [line for line in lines(self.path, offset) if line.endswith(b"\n")]
+        rows = list(map(row_of, whole))  # before anything is cut
+        self._file.truncate(sum(map(len, whole)))
+        self._file.seek(0, os.SEEK_END)
         sound = [row for row in rows if row is not None]
-        for logger in self._loggers:
-            logger.rewind(sound, step)
-        if self._lines.size == offset and None not in rows:
+        self._begun = self._begun._replace(rows=sound, step=step)
+        if self._file.tell() == offset and None not in rows:
             return []
-        path = self._lines.path
-        return [f"{path} has changed: rows before step {step} are missing or edited"]
+        return [f"{self.path} has changed: rows before step {step} are missing or edited"]
 
     def summary(self, fields: dict[str, Any]) -> Path:
         """Replace summary.json; NaN and infinity become null."""

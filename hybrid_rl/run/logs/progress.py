@@ -53,7 +53,8 @@ def ignore_closed_output() -> Iterator[None]:
 class Progress:
     """Steps of `total`, the latest scalars, speed, time left; a line at least every 10 s.
 
-    unit: of a step; steady: the step from which the speed is representative.
+    unit: of a step; steady: the step from which the speed is representative; visible: false shows
+    nothing.
 
     with Progress(total, "halfcheetah sac") as progress:
         with progress.doing("compiling"):
@@ -61,9 +62,16 @@ class Progress:
         progress.update(step, {"train/return": 12.0})
     """
 
-    def __init__(self, total: int, label: str = "", unit: str = "steps", steady: int = 0) -> None:
+    def __init__(
+        self,
+        total: int,
+        label: str = "",
+        unit: str = "steps",
+        steady: int = 0,
+        visible: bool = True,
+    ) -> None:
         self.total, self.step, self.label = total, 0, label
-        self.unit, self.steady = unit, steady
+        self.unit, self.steady, self.visible = unit, steady, visible
         self._scalars: dict[str, tuple[float, int]] = {}  # name -> value, step
         self._drawn: list[float] = []  # values of DRAWN
         self._clock: deque[tuple[float, int]] = deque()  # ([s], step), the last WINDOW
@@ -77,7 +85,7 @@ class Progress:
     def __enter__(self) -> Self:
         self._began = time.monotonic()
         console = Console()
-        if sys.stdout.isatty() and not console.is_dumb_terminal:
+        if self.visible and sys.stdout.isatty() and not console.is_dumb_terminal:
             self._bar = Bar(
                 TextColumn("{task.description}", style="bold"),
                 BarColumn(bar_width=None),
@@ -90,7 +98,7 @@ class Progress:
             self._live = Live(get_renderable=self._picture, console=console, refresh_per_second=4)
             self._live.start()
             console.show_cursor(True)  # nothing to restore if the process ends suddenly
-        else:
+        elif self.visible:
             threading.Thread(target=self._beat, daemon=True).start()
         return self
 
@@ -120,7 +128,7 @@ class Progress:
         if self._live is not None:
             self._bar.update(self._task, completed=step)
             return
-        self._pending = True
+        self._pending = self.visible
         if say or (say is None and (self._printed is None or now - self._printed >= PAUSE)):
             self._print()
 
@@ -138,7 +146,7 @@ class Progress:
         if self._live is not None:
             with ignore_closed_output():
                 self._live.console.print(text, markup=False, highlight=False)
-        else:
+        elif self.visible:
             with self._lock:
                 say(text)
 
@@ -157,6 +165,8 @@ class Progress:
 
     def _print(self) -> None:
         """Print a plain line."""
+        if not self.visible:
+            return
         with self._lock:
             share = self.step / self.total if self.total else 1.0
             count = f"{self.step:,}/{self.total:,} ({share:.0%})"
@@ -188,20 +198,6 @@ class Progress:
         if self._draws and len(self._drawn) > 1:
             lines.append(Text(curve.small(self._drawn), style="green"))
         return Group(self._bar, *lines)
-
-
-class Silent(Progress):
-    """No display, and no line."""
-
-    def __enter__(self) -> Self:
-        return self
-
-    def update(self, step: int, scalars: dict[str, float], say: bool | None = None) -> None:
-        """Keep the step, and show nothing."""
-        self.step = step
-
-    def note(self, text: str) -> None:
-        """Print nothing."""
 
 
 def rate(value: float) -> str:

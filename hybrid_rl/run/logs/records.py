@@ -1,4 +1,4 @@
-"""What the records of a run hold, as they are read back: rows of metrics.jsonl, and summary.json.
+"""Records of a run, as they are read back: rows of metrics.jsonl, and summary.json.
 
 A line or a value that training does not write is damage, and is found here.
 """
@@ -42,7 +42,7 @@ def row_of(line: bytes) -> Row | None:
 
 
 def summary_of(file: Path) -> dict[str, Any]:
-    """What summary.json holds."""
+    """The contents of summary.json."""
     values = json_file(file)
     if wrong := [key for key in SUMMARY if key in values and not SUMMARY[key](values[key])]:
         raise UsageError(f"{file}: {wrong[0]} is not what training writes")
@@ -58,12 +58,12 @@ def _maybe(value: Any) -> bool:
 
 
 def _all(each: Callable[[Any], bool]) -> Callable[[Any], bool]:
-    """Whether a value is null, or a list of what `each` accepts."""
+    """True if a value is null, or a list of what `each` accepts."""
     return lambda value: value is None or (isinstance(value, list) and all(map(each, value)))
 
 
 def _end(value: Any) -> bool:
-    """Whether a value says where a learner diverged."""
+    """True if a value says where a learner diverged."""
     return isinstance(value, dict) and _number(value.get("step")) and {*END} <= {*value}
 
 

@@ -60,7 +60,7 @@ class Gathered:
 
     @classmethod
     def joined(cls, each: "Sequence[Gathered]") -> Self:
-        """What was `split`."""
+        """The inverse of `split`."""
         made, wholes = cls(), [one.whole() for one in each]
         if all(wholes):
             made.add({n: np.concatenate([w[n] for w in wholes], axis=1) for n in wholes[0]})
@@ -87,7 +87,7 @@ def infinite(metrics: Metrics, start: int, worlds: int) -> dict[int, tuple[int, 
 
 
 def of_world(name: str) -> bool:
-    """Whether a metric is what a world returns."""
+    """True if a metric is a number that a world returns."""
     return name.startswith("world/") and name != ACTION
 
 

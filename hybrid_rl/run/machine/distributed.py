@@ -27,26 +27,23 @@ HOW = (
 
 def share(config: DictConfig) -> DictConfig:
     """The run of this process: its seeds, its folder."""
-    key = "run_dir" if config.resume is None else "resume"
+    key, flaw = "run_dir" if config.resume is None else "resume", ""
     if config[key] is None:
         raise UsageError("run_dir=null: distributed=true needs one folder for all processes")
     index, count = processes()
-    parent = Path(str(config[key]))
-    own = config.copy()
+    parent, own = Path(str(config[key])), config.copy()
     own.distributed = False
     own[key] = str(parent / f"process_{index}")
-    if config.resume is not None:
-        there = len([*parent.glob("process_*")])
-        if there != count:
-            raise UsageError(
-                f"resume={parent}: holds {there} shares, and there are {count} processes"
-            )
-        return own
-    if config.num_seeds < count:
-        raise UsageError(f"num_seeds={config.num_seeds}: must be {count} or more, one a process")
-    each, more = divmod(config.num_seeds, count)
-    own.seed = config.seed + index * each + min(index, more)
-    own.num_seeds = each + (index < more)
+    if config.resume is None:
+        least, more = divmod(config.num_seeds, count)
+        own.seed = config.seed + index * least + min(index, more)
+        own.num_seeds = least + (index < more)
+        if not least:
+            flaw = f"num_seeds={config.num_seeds}: must be {count} or more, one a process"
+    elif (there := len([*parent.glob("process_*")])) != count:
+        flaw = f"resume={parent}: holds {there} shares, and there are {count} processes"
+    if flaw:
+        raise UsageError(flaw)
     return own
 
 

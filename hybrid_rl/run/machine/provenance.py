@@ -43,7 +43,7 @@ def git_commit() -> str | None:
 
 
 def device() -> str:
-    """What JAX computes on: "gpu: NVIDIA H100" or "cpu: AMD EPYC 7B13, 8 threads"."""
+    """The device of JAX: "gpu: NVIDIA H100" or "cpu: AMD EPYC 7B13, 8 threads"."""
     devices = jax.devices()
     first = devices[0]
     if first.platform == "cpu":

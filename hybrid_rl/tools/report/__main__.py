@@ -272,14 +272,7 @@ def main() -> None:
         write_text(out, entry(runs))
         print(f"{out}: now the link, and in the name what is no default, by hand; then make pages")
         return
-    try:
-        text = page(runs, given["video"] == "auto")
-    except UsageError as error:
-        if len(runs) == 1:
-            raise
-        many = f"one of the {len(runs)} runs in run={given['run']}"
-        raise UsageError(f"{error}; it is {many}") from error
-    write_text(out, text)
+    write_text(out, page(runs, given["video"] == "auto"))
     size = out.stat().st_size / 1e6
     print(f"{out}: {plural(len(runs), 'run')}, {size:.1f} MB")
 

@@ -1,0 +1,157 @@
+"""The runs of one program: one, or those of a sweep in numbers alone, sweep.KEY=[A,B,C].
+
+Several keys make every combination of their values. The folder of a sweep holds a run folder 0, 1,
+... for each, which `evaluate`, `render`, `run=DIR` and figures take as they take any other, and
+sweep.json: key -> the value in each of the runs. Its learners are those of all seeds.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from itertools import product
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+from omegaconf import DictConfig, OmegaConf
+
+from hybrid_rl.envs.adapters.external import External
+from hybrid_rl.errors import UsageError
+from hybrid_rl.outside.loops import loop_of
+from hybrid_rl.run import folder, start
+from hybrid_rl.run.logs.records import flatten_keys
+from hybrid_rl.settings import build as configuration
+from hybrid_rl.settings import words as overrides
+from hybrid_rl.settings.build import Run
+from hybrid_rl.settings.complete import LACKING, refusal, select, source
+from hybrid_rl.settings.words import raw_values
+from hybrid_rl.training.axis import Axis, DifferError
+from hybrid_rl.training.loop import Loop
+from hybrid_rl.training.rollout import act, advance, begin
+
+
+@dataclass(frozen=True)
+class Member:
+    """A run of a program: its resolved configuration, and what sets it apart from the others."""
+
+    config: DictConfig
+    values: Mapping[str, float] = field(default_factory=dict)  # key -> value
+
+
+def load(texts: Sequence[str] | DictConfig, config_dir: str | Path | None = None) -> list[Member]:
+    """The runs of overrides, or of a resolved configuration."""
+    if isinstance(texts, DictConfig):
+        return [Member(texts)]
+    words = texts if isinstance(texts, str | Mapping) else start.add_recipe(texts, config_dir)
+    return expand_sweep(configuration.compose_raw(words, config_dir), words)
+
+
+def expand_sweep(config: DictConfig, texts: Sequence[str]) -> list[Member]:
+    """A run for each combination of the values of the keys below `sweep`; one if there is none.
+
+    config: composed from the overrides `texts`, with its interpolations.
+    """
+    texts, raw = [text for text in texts if not overrides.is_swept(text)], raw_values(config)
+    lists, config = flatten_keys(raw.pop("sweep") or {}), config.copy()
+    config.sweep = {}
+    for key, values in lists.items():
+        _check_values(raw, key, values)
+    if lists and config.get("distributed"):
+        raise UsageError("distributed=true: trains no sweep; use -m, or one process")
+    members = []
+    for values in product(*lists.values()):
+        chosen = dict(zip(lists, values, strict=True))
+        typed = [f"{key}={value}" for key, value in chosen.items()]
+        own = config.copy()
+        for key, value in chosen.items():
+            OmegaConf.update(own, source(raw, key), value)
+        members.append(Member(configuration.resolve(own, [*texts, *typed]), chosen))
+    if len(members) > 1 and config.get("resume") is not None:
+        before = [*folder.members(Path(str(config.resume))).values()]
+        if before != [member.values for member in members]:
+            has = ", ".join(map(folder.words, before)) or "no sweep"
+            raise UsageError(f"sweep: resume={config.resume} has {has}; leave sweep.KEY out")
+    return members
+
+
+def _check_values(raw: dict[str, Any], key: str, values: Any) -> None:
+    """Raise UsageError for a key that does not exist, or for what is no list of numbers."""
+    if select(raw, key) is LACKING:
+        raise UsageError(f"sweep.{refusal(key, [raw])}")
+    numbers = values if isinstance(values, list) else []
+    finite = all(type(x) in (int, float) and isfinite(x) for x in numbers)
+    if not numbers or not finite or len({*numbers}) < len(numbers):
+        line = "must be a list of different numbers, such as [0.99,0.995]"
+        raise UsageError(f"sweep.{key}={values}: {line}")
+
+
+def axis_of(values: Sequence[Mapping[str, float]], runs: Sequence[Run]) -> Axis:
+    """The numbers in which the runs of a program differ; values: key -> value, of each."""
+    trees = [{"agent": run.agent, "controllers": run.controllers} for run in runs]
+    try:
+        axis = Axis.of(trees, tuple(map(folder.words, values)))
+    except DifferError as error:
+        raise _refused(values, error.path) from error
+    for path in axis.numbers:
+        if path.startswith("agent.episode."):
+            raise _refused(values, path, "all learners have the same world")
+    for key in values[0]:
+        rest = values[0].items() - {(key, values[0][key])}
+        same = [tree for tree, own in zip(trees, values, strict=True) if rest <= own.items()]
+        if len(same) > 1 and not Axis.of(same).numbers:
+            raise _refused(values, key, "it is no number of a learner or a controller")
+    try:
+        if axis.numbers:
+            _trace(axis, runs[0])
+    except Exception as error:  # whatever a part does with a number that is not known
+        if isinstance(error, UsageError):
+            raise
+        raise _refused(values, "") from error
+    return axis
+
+
+def _trace(axis: Axis, run: Run) -> None:
+    """Trace what a program computes with the numbers of `axis`; nothing is compiled."""
+    loop = loop_of(run.agent, run.seeds * axis.count, 1, axis=axis)
+    state = loop.shapes()
+    one = jax.tree.map(lambda leaf: jax.ShapeDtypeStruct(leaf.shape[1:], leaf.dtype), state)
+    jax.eval_shape(loop.step, one, jnp.int32(0))
+    for mode, controller in run.controllers.items():
+        jax.eval_shape(partial(_episode, loop, controller, f"controllers.{mode}"), one)
+
+
+def _episode(loop: Loop, controller: Any, path: str, state: Any) -> Any:
+    """A decision of an evaluation."""
+    episode, params = loop.agent.episode, loop.agent.params(state)
+    controller = loop.axis.put(controller, path, state.numbers)
+    carry = begin(episode, controller, state.key[None])
+    if isinstance(episode.env, External):  # JAX does not step it
+        return act(controller, params, carry[1], carry[0], carry[2])
+    return advance(episode, controller, params, carry, jnp.int32(1))
+
+
+def _refused(
+    values: Sequence[Mapping[str, float]], path: str, why: str = "they decide what is compiled"
+) -> UsageError:
+    """The error of a key whose values change what is at `path`."""
+    last = path.rpartition(".")[2]
+    keys = [key for key in values[0] if key.rpartition(".")[2] == last] or [*values[0]]
+    pairs = [(key, ",".join(map(str, dict.fromkeys(own[key] for own in values)))) for key in keys]
+    typed = ", ".join(f"sweep.{key}=[{listed}]" for key, listed in pairs)
+    instead = " ".join(f"{key}={listed}" for key, listed in pairs)
+    return UsageError(f"{typed}: one program cannot have several, as {why}; use -m {instead}")
+
+
+def joined(folders: Sequence[Path], summaries: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """The summary of a run; of a sweep what its runs are together, and "runs", each of them."""
+    if len(summaries) == 1:
+        return summaries[0]
+    lists = {
+        key: [value for summary in summaries for value in summary[key]]
+        for key in ("seeds", "final_return", "final_eval", "diverged")
+    }
+    same = ("task", "algo", "total_steps", "finished", "wall_s", "compile_s", "signal")
+    kept = {key: summaries[0][key] for key in same}
+    return kept | lists | {"run_dir": str(folders[0].parent), "runs": [*summaries]}

@@ -1,0 +1,135 @@
+"""Gymnasium environments that are wrong, or go wrong: one line says what they must be."""
+
+import re
+from typing import Any, ClassVar
+
+import gymnasium
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from gymnasium.spaces import Box, Dict, Discrete
+from gymnasium.wrappers import OrderEnforcing, TimeLimit
+from hosted import Count, counting
+
+from hybrid_rl.envs.adapters.external import External, check_world
+from hybrid_rl.errors import UsageError, WorldError
+from hybrid_rl.types import Spec
+
+STEPS = 5  # decisions of an episode
+
+
+@pytest.mark.parametrize(
+    ("fail", "line"),
+    [
+        ("error", ": ValueError: motor off"),
+        ("exit", ": SystemExit; raise an error instead of sys.exit()"),
+        ("nan", "Count: step: entry 1 of obs is not finite"),
+        ("size", "Count: step: "),
+        ("reward", "Count: step: gives a reward that is not finite"),
+    ],
+)
+def test_what_goes_wrong_in_an_environment_is_one_line(fail, line):
+    copies = counting(fail=fail).copies([1, 2], STEPS)
+    copies.reset()
+    with pytest.raises(WorldError, match=re.escape(line)) as error:
+        list(map(copies.step, np.zeros((3, 2, 1))))
+    assert "\n" not in str(error.value)
+
+
+class Odd(gymnasium.Env):
+    """Spaces that have to be flattened, or refused."""
+
+    observation_space = Dict({"b": Discrete(3), "a": Box(0, 1, (2, 2))})
+    metadata: ClassVar = {"render_fps": 50}
+
+    def __init__(self, actions: Any = None, obs: Any = None) -> None:
+        self.action_space = Box(-1, 1, (2, 1)) if actions is None else actions
+        if obs is not None:
+            self.observation_space = obs
+
+    def reset(self, seed: int | None = None, options: dict | None = None) -> tuple:
+        return self.observation_space.sample(), {}
+
+    def step(self, action: np.ndarray) -> tuple:
+        return self.observation_space.sample(), 0.0, False, False, {}
+
+
+def test_spaces_of_any_form_are_flattened():
+    odd = External(make=Odd)
+    assert (odd.spec, odd.parts) == (Spec(obs=7, act=2, dt=0.02), "a [4], b [3]")
+    np.testing.assert_array_equal(odd.flat({"b": 1, "a": np.ones((2, 2))}), [1, 1, 1, 1, 0, 1, 0])
+    assert counting().parts == ""
+    with pytest.raises(UsageError, match=r"Odd: has observations Box\(.*; they must be numbers in"):
+        External(make=Odd, kwargs={"obs": Box(-1, 1, (0,))})
+    with pytest.raises(UsageError, match=r"CartPole-v1: has actions Discrete\(2\); they must be a"):
+        External(id="CartPole-v1")
+
+
+def test_an_action_of_whole_numbers_is_the_nearest():
+    class Whole(Count):
+        action_space = Box(-2, 4, (1,), np.int32)
+
+    copies = External(make=Whole).copies([0], STEPS)
+    copies.reset()
+    rewards = [copies.step(np.array([[u]])).reward[0] for u in (0.9, -0.9, 0.0)]
+    assert rewards == [4, -2, 1]
+
+
+def test_a_time_limit_among_the_wrappers_is_that_of_the_episode():
+    limited = External(make=lambda: OrderEnforcing(TimeLimit(Odd(), 50)))
+    assert limited.known.steps == 50
+    assert External(make=Odd).known.steps is None
+
+
+@pytest.mark.parametrize(
+    ("given", "line"),
+    [
+        ({}, "give an id of Gymnasium, or env.make=MODULE:CLASS"),
+        ({"id": "Hoper-v5"}, "env.id=Hoper-v5: NameNotFound: "),
+        ({"id": "CartPole-v1"}, "CartPole-v1: has actions Discrete(2)"),
+        ({"make": Odd, "kwargs": {"actions": Box(-np.inf, 1, (1,))}}, "finite bounds"),
+        ({"make": "nowhere:Env"}, "env.make=nowhere:Env: cannot be imported (No module named"),
+        ({"make": "json:loads"}, "env.make=json:loads: TypeError"),
+        ({"make": type("Timeless", (Count,), {"metadata": {}})}, "does not say its time step"),
+    ],
+)
+def test_what_is_no_usable_environment_is_one_line(given, line):
+    with pytest.raises(UsageError, match=re.escape(line)) as error:
+        External(**given)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("method", "returned", "line"),
+    [
+        ("step", (np.ones(2), 0.0, False, {}), "ValueError: not enough values to unpack"),
+        ("step", (np.ones(3), 0.0, False, False, {}), "gives observations of shape [1, 3]; its"),
+        ("step", (np.ones(2), np.nan, False, False, {}), "gives a reward that is not finite"),
+        ("step", (np.array([0, np.nan]), 0.0, False, False, {}), "entry 1 of obs is not finite"),
+        ("reset", (np.array([0, np.nan]), {}), "entry 1 of obs is not finite"),
+        ("reset", np.ones(1), "gives observations of shape [1]; its space says [1, 2]"),
+    ],
+)
+def test_what_the_first_step_returns_is_checked_before_a_run(method, returned, line):
+    class Wrong(Count): ...
+
+    def instead(self: Wrong, *given: Any, **options: Any) -> Any:
+        getattr(Count, method)(self, *given, **options)
+        return returned
+
+    setattr(Wrong, method, instead)
+    with pytest.raises(WorldError, match=re.escape(f"Wrong: {method}: {line}")) as error:
+        check_world(External(make=Wrong))
+    assert "\n" not in str(error.value)
+
+
+def test_an_id_without_a_version_has_the_time_limit_of_the_newest():
+    with pytest.warns(UserWarning, match="latest versioned"):
+        assert External(id="Pendulum").known.steps == 200
+
+
+def test_planning_on_the_environment_itself_is_refused():
+    env = counting()
+    with pytest.raises(UsageError, match="steps on the host"):
+        env.step(env.reset(jax.random.key(0)), jnp.zeros(1))

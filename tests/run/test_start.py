@@ -1,0 +1,321 @@
+"""train run=DIR: a new run begins with what another one knows, as far as it is true there."""
+
+import json
+import os
+import shutil
+import subprocess
+from types import SimpleNamespace
+
+import jax
+import numpy as np
+import pytest
+from omegaconf import OmegaConf
+from programs import shared
+from tiny import call_train, contents, only_line, rows_of, run, summary_of
+
+from hybrid_rl.envs.analytic.pendulum import Pendulum
+from hybrid_rl.errors import UsageError
+from hybrid_rl.run import folder, members, start
+from hybrid_rl.run import saved as trained
+from hybrid_rl.run.checkpoints.store import Store
+from hybrid_rl.settings import build as config
+from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.loop import Loop
+from scripts import interrupt
+
+pytestmark = pytest.mark.turns(3)
+
+HYBRID = ["task=quadcopter", "algo=hybrid_stochastic", "learning=replay", "physics=native"]
+HYBRID += ["episode.steps=40", "checkpoint_every=150", "eval_every=150", "eval_modes=[policy]"]
+MOTION = ["reward=aim", "reward.quantity=motion", "reward.target=[0,0,1,0,0,0]"]
+
+
+@pytest.fixture(scope="module")
+def source(tmp_path_factory):
+    """A run of one learner; its memory holds the last 200 of 300 decisions."""
+    folder = tmp_path_factory.mktemp("source") / "run"
+    run(folder, *HYBRID, "total_steps=300", "seed=4")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def warm(source, tmp_path_factory):
+    """A run that began with it, and changed its model alone."""
+    folder = tmp_path_factory.mktemp("warm") / "run"
+    line = [f"run={source}", f"run_dir={folder}", "total_steps=150", "freeze=[policy]"]
+    assert call_train(*line, *MOTION) == 0
+    return folder
+
+
+def begun(source, *overrides):
+    """Configuration, loop and first state of a run that begins with `source`."""
+    made = members.load([f"run={source}", *overrides])[0].config
+    with shared():
+        built, first = start.build_new_run(made)
+        loop = Loop(built.agent, built.seeds, 1)
+        return made, loop, first.given(loop.init()), first.line
+
+
+def saved(folder):
+    """The state in the newest checkpoint of a run."""
+    made = config.build(OmegaConf.load(folder / "config.yaml"))
+    store = Store(folder / "checkpoints", Loop(made.agent, made.seeds, 1), True, {})
+    with shared():
+        return store.restore()[0]
+
+
+def same(one, two):
+    """Whether all leaves are equal bit for bit."""
+    return jax.tree.all(jax.tree.map(np.array_equal, one, two))
+
+
+def test_it_begins_with_all_that_the_learners_know(source):
+    made, loop, state, line = begun(source, "policy_learner.tau=0.01", "total_steps=50")
+    old = saved(source)
+    assert same(jax.device_get(state.learners), jax.device_get(old.learners))
+    params = jax.tree.map(lambda leaf: leaf[0], jax.vmap(loop.agent.params)(state))
+    obs = state.env.obs[0, 0]
+    actor, theirs = trained.load(source).learner(mode="policy")
+    first, key = actor.init(loop.agent.spec), jax.random.key(3)
+    mine, wanted = (actor.act(each, first, obs, key)[0] for each in (params, theirs))
+    assert np.array_equal(mine, wanted)
+    assert (made.random_steps, made.seed, made.total_steps, made.log_every) == (0, 4, 50, 50)
+    assert made.learners.policy.tau == made.policy_learner.tau == 0.01
+    assert made.policy.hidden == [16]
+    assert "begins with model, reward, policy and critic of" in line
+    assert "at step 300; memory: its last 200 decisions" in line
+
+
+def test_another_commit_is_named(source, tmp_path):
+    folder = shutil.copytree(source, tmp_path / "run")
+    (folder / "summary.json").write_text(json.dumps(summary_of(folder) | {"git_commit": "1a2b3c"}))
+    assert begun(folder, "total_steps=50")[-1].endswith("; made at another commit, 1a2b3c")
+    with pytest.raises(UsageError, match=r"policy.hidden was \[16\] and is \[8\]: .* there\)$"):
+        begun(folder, "policy.hidden=[8]")
+
+
+def test_the_memory_stays_where_it_is_true(source):
+    _, loop, state, _ = begun(source, "episode.steps=30", "total_steps=50", "replay.capacity=1000")
+    rows, old = np.asarray(state.memory.rows[0]), np.asarray(saved(source).memory.rows[0])
+    assert rows.shape[0] == 250
+    assert int(state.memory.count[0]) == 200
+    in_time = np.roll(old, -(300 % 200), axis=0)
+    in_time[-1, :, -10] = 1  # another episode follows: truncated
+    assert np.array_equal(rows[:200], in_time)
+    assert set(loop.agent.starts().values()) == {0}
+    _, _, state, _ = begun(source, "replay.capacity=60")
+    assert int(state.memory.count[0]) == 60
+    assert np.array_equal(state.memory.rows[0], in_time[-60:])
+
+
+def test_another_reward_is_that_of_the_memory_too(source):
+    made, loop, state, line = begun(source, *MOTION)
+    assert line.endswith("200 decisions, with the rewards that they earn now")
+    assert made.reward.world == made.env
+    spec, rows = loop.agent.spec, np.asarray(state.memory.rows[0, :200, 0])
+    motion, u = rows[:, -6:], rows[:, spec.obs : spec.obs + spec.act]
+    away = np.linalg.norm(motion - np.array([0, 0, 1, 0, 0, 0]), axis=1)
+    wanted = -away - 0.05 * (u**2).sum(1)
+    np.testing.assert_allclose(rows[:, spec.obs + spec.act], wanted, rtol=1e-4)
+
+
+def test_a_part_that_the_run_did_not_have_gets_its_networks(source):
+    """Another planner, of another part of conf/."""
+    made = members.load([f"run={source}", "planner=gradient"])[0].config
+    assert made.controllers.full._target_.endswith("GradientController")
+    assert made.controllers.full.policy == made.policy
+    assert made.controllers.full.objective.critic == made.critic
+    assert made.policy.hidden == [16]
+
+
+def test_what_was_imagined_is_kept_only_where_nothing_changed(source, monkeypatch):
+    seen = []
+    monkeypatch.setattr(start, "forgotten", lambda tree: seen.append(1) or tree)
+    begun(source, "total_steps=50")
+    assert not seen
+    begun(source, *MOTION)
+    assert seen
+
+
+def test_a_group_that_is_newer_than_the_run_is_changed_all_the_same(source, tmp_path):
+    folder = tmp_path / "older"
+    shutil.copytree(source, folder)
+    older = OmegaConf.load(folder / "config.yaml")
+    del older.episode.randomise
+    OmegaConf.save(older, folder / "config.yaml")
+    made = members.load([f"run={folder}", "episode.randomise.mass=[0.7,1.3]"])[0].config
+    assert made.episode.randomise.mass == [0.7, 1.3]
+    assert made.episode.randomise.friction is None
+    assert made.episode.steps == 40
+
+
+def test_a_key_that_the_run_lacks_is_named(source, tmp_path):
+    folder = tmp_path / "older"
+    shutil.copytree(source, folder)
+    lines = (folder / "config.yaml").read_text().splitlines(keepends=True)
+    lines = [line for line in lines if not line.startswith("checkpoint_replay")]
+    (folder / "config.yaml").write_text("".join(lines))
+    with pytest.raises(UsageError, match=r"older/config\.yaml: lacks checkpoint_replay$"):
+        begun(folder)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (["env.damping=true"], "memory: empty, since env.damping differs"),
+        (["episode.delay=1", "num_envs=2"], "since episode.delay and num_envs differ"),
+        ([*MOTION, "env.damping=true"], "memory: empty, since env.damping differs"),
+    ],
+)
+def test_the_memory_is_empty_where_it_would_be_false(source, given, words):
+    made, loop, state, line = begun(source, *given)
+    assert words in line
+    assert words in f"memory: {made.begun.memory}"
+    assert not state.memory.count.any()
+    assert max(loop.agent.starts().values()) == 16 + loop.agent.num_envs
+    assert made.learners.policy == made.policy_learner
+    if "env.damping=true" in given:
+        assert made.env.damping
+        assert made.reward is None or made.reward.world.damping
+
+
+def test_one_learner_begins_several(source):
+    _, loop, state, _ = begun(source, "num_seeds=3", "seed=7")
+    assert loop.seeds == (7, 8, 9)
+    for leaf in jax.tree.leaves(jax.device_get((state.learners, state.memory))):
+        assert len(leaf) == 3
+        assert np.array_equal(leaf[0], leaf[2])
+    assert not np.array_equal(state.env.obs[0], state.env.obs[1])
+
+
+def test_learners_that_are_too_few_or_diverged_begin_nothing(source, monkeypatch):
+    two, three = (SimpleNamespace(num_seeds=number) for number in (2, 3))
+    assert start._numbers(two, two, source).tolist() == [0, 1]
+    with pytest.raises(UsageError, match=r"run=.*: has 2 learners; num_seeds=3 must be as many"):
+        start._numbers(three, two, source)
+    meta = {"record": {"ends": [{"seed": 4}]}}
+    monkeypatch.setattr(start.checkpoint, "meta", lambda folder: meta)
+    with pytest.raises(UsageError, match="its learner of seed 4 diverged"):
+        begun(source)
+
+
+@pytest.mark.parametrize(
+    "given", [{"action_repeat": 2}, {"delay": 1}, {"action_noise": 0.1}, {"sensor_noise": 0.1}]
+)
+def test_another_reward_follows_only_from_what_the_world_itself_saw(given):
+    world = Pendulum()
+    assert start._follows(Episode(world))
+    assert not start._follows(Episode(world, **given))
+
+
+def test_what_is_frozen_stays(source, warm):
+    before, after = saved(source).learners, saved(warm).learners
+    assert same(before["policy"], after["policy"])
+    assert not same(before["model"], after["model"])
+    rows = rows_of(warm)
+    assert [row["step"] for row in rows if "eval/policy_return" in row] == [0, 150]
+    assert [row["step"] for row in rows if "model/loss" in row] == [50, 100, 150]
+    assert not [row for row in rows if "sac/q" in row]
+    kept, summary = (
+        OmegaConf.load(warm / "config.yaml"),
+        summary_of(warm),
+    )
+    assert (kept.run, kept.freeze, kept.begun.step) == (str(source), ["policy"], 300)
+    assert summary["run"] == str(source)
+    assert summary["begun"]["remembered"] == 200
+
+
+def test_it_goes_on_bit_for_bit_without_the_first_run(source, warm, tmp_path):
+    first, folder = tmp_path / "first", tmp_path / "run"
+    shutil.copytree(source, first)
+    line = [f"run={first}", f"run_dir={folder}", "total_steps=100", "freeze=[policy]"]
+    assert call_train(*line, *MOTION, "checkpoint_every=50") == 0
+    shutil.rmtree(first)
+    shutil.rmtree(folder / "checkpoints" / "100")
+    assert call_train(f"resume={folder}", "total_steps=150") == 0
+    assert interrupt.difference(folder, warm) == ""
+
+
+REFUSED = [  # overrides, words of the line
+    ("policy.hidden=[8]", "policy.hidden was [16] and is [8]: parameters of run="),
+    ("model.hidden=[8]", "model.hidden was [16] and is [8]: parameters of run="),
+    ("env.task=track", "env.task was hover and is track: parameters of run="),
+    ("task=pendulum", "and is hybrid_rl.envs.analytic.pendulum.Pendulum"),
+    ("algo=sac", ": parameters of run="),
+    ("critic.layer_norm=false", "critic.layer_norm was True and is False: parameters of run="),
+    ("settings=light", "critic.hidden was [16] and is [128, 128]"),
+    ("resume={source}", "run, resume: give one of them"),
+    ("freeze=[polcy]", "freeze=[polcy]: the method's learners are model, policy"),
+    ("freeze=policy", "freeze=policy: must be a list"),
+    ("pretrain=3", "pretrain=3: what run="),
+    ("policy.hiden=[8]", "hybrid_stochastic has no such key; did you mean policy.hidden?"),
+    ("~policy.hidden", "policy.hidden was [16] and is [256, 256]: parameters of run="),
+]
+
+
+@pytest.mark.parametrize(("given", "words"), REFUSED, ids=[given for given, _ in REFUSED])
+def test_what_does_not_fit_is_one_line(source, tmp_path, monkeypatch, capfd, given, words):
+    monkeypatch.chdir(tmp_path)
+    before = contents(source)
+    assert call_train(f"run={source}", given.format(source=source)) == 2
+    assert words in only_line(capfd)
+    assert contents(source) == before
+
+
+@pytest.mark.parametrize(
+    ("words", "line"),
+    [
+        (["env.physics=$(oc.env:HOME)"], "is no KEY=VALUE of a run"),
+        (["hydra.run.dir=elsewhere"], "is no KEY=VALUE of a run"),
+        (["task=../../theirs"], "is no KEY=VALUE of a run"),
+        (3, "must be a list of KEY=VALUE"),
+        (["env._target_=subprocess.Popen"], "is no part of hybrid_rl"),
+        (["policy=" + "[" * 5000 + "]" * 5000], r"cannot be composed \(RecursionError\)"),
+        (None, "must be a list of KEY=VALUE; train it again"),
+    ],
+    ids=range(7),
+)
+def test_the_words_of_a_run_are_judged(tmp_path, words, line):
+    config_of = config.load(["task=pendulum", "algo=sac"])
+    config_of.recipe = words
+    folder.write(tmp_path, config_of)
+    with pytest.raises(UsageError, match=line):
+        members.load([f"run={tmp_path}"])
+
+
+def test_where_a_run_wrote_to_is_no_word_of_the_next_one(tmp_path):
+    config_of = config.load(["task=pendulum", "algo=sac"])
+    config_of.recipe = ["task=pendulum", "algo=sac", "run_dir=../elsewhere"]
+    folder.write(tmp_path, config_of)
+    (made,) = members.load([f"run={tmp_path}"])
+    assert (made.config.task, made.config.run_dir) == ("pendulum", None)
+
+
+@pytest.mark.parametrize("kind", ["deep", "long", "group"])
+def test_a_folder_of_files_that_a_run_names_is_read_within_limits(tmp_path, kind, monkeypatch):
+    """Its key `config_dir` may lead to folders without end, or nowhere."""
+    config_of = config.load(["task=pendulum", "algo=sac"])
+    (tmp_path / "conf").mkdir()
+    monkeypatch.chdir(tmp_path / "conf")
+    for _ in range(2000 if kind == "deep" else 0):
+        os.mkdir("d")
+        os.chdir("d")
+    given = {"deep": str(tmp_path / "conf"), "long": "a/" * 5000, "group": {"a": {"b": 1}}}
+    config_of.config_dir = given[kind]
+    os.chdir(tmp_path)
+    folder.write(tmp_path, config_of)
+    with pytest.raises(UsageError, match=r"recipe: cannot be composed"):
+        members.load([f"run={tmp_path}"])
+    subprocess.run(["rm", "-r", "conf"], check=True)  # Python's own would recurse without end
+
+
+def test_no_run_and_no_checkpoint_are_one_line(source, tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    assert call_train("run=nowhere") == 2
+    assert "run=nowhere: no run folder there" in only_line(capfd)
+    (tmp_path / "begun").mkdir()
+    shutil.copy(source / "config.yaml", tmp_path / "begun")
+    assert call_train("run=begun") == 2
+    assert "run=begun: holds no checkpoint yet" in only_line(capfd)
+    with pytest.raises(UsageError, match="run=nowhere: only the command"):
+        config.load(["run=nowhere"])

@@ -1,0 +1,89 @@
+"""Pictures of training: the scene, and next to it the belief that was learned by then."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from hybrid_rl.analysis.style import STYLE, legend_below
+from hybrid_rl.run import folder as run_folder
+from hybrid_rl.run.logs.progress import Progress
+from hybrid_rl.run.machine.jax_settings import prepare
+from hybrid_rl.thesis.studies.belief_frames import Drawn, beliefs, scenes, trial_of, truth
+from hybrid_rl.thesis.studies.belief_panel import Panel, View
+from hybrid_rl.thesis.studies.recorded import read
+
+LENGTH = 13.5  # [s] of a video of an episode, at most about
+MOST = {".mp4": 200, ".gif": 100, ".png": 1}  # pictures of an episode
+SIDE = 4.8  # [in] of the panel, by which its letters are scaled
+
+
+class Film(NamedTuple):
+    """F pictures of an episode of T decisions."""
+
+    world: Any
+    poses: np.ndarray  # [F, nq]
+    panel: Callable[[int], np.ndarray]  # number of a picture -> [height, height, 3]
+    fps: float  # [1/s]
+    speed: float  # times real time
+    decisions: int  # T
+    total: float  # undiscounted return
+    apart: float  # of the scene from the record, at most, in units of the observation
+
+
+def film(folder: Path, seed: int | None, steps: int, height: int, most: int) -> Film:
+    """The first episode of training of one learner.
+
+    seed: None is the first. steps: at most this many decisions; 0: all. height: [pixels], even.
+    most: pictures at most, but for the last one; 1: the end alone.
+    """
+    prepare(run_folder.read(folder, "run"))
+    recorded = read(folder, key="run")
+    trial = trial_of(recorded, recorded.run.seeds[0] if seed is None else seed, "run")
+    length = min(steps or len(trial.s), len(trial.s))
+    marks = _marks(length, most)
+    drawn, views = Drawn(trial), []
+    with Progress(len(marks), label="learning again", unit="pictures") as progress:
+        for belief, mark in zip(beliefs(trial, marks), marks, strict=True):
+            views.append(drawn.view(belief, mark))
+            progress.update(len(views), {})
+    poses, apart = scenes(trial)
+    times = recorded.run.agent.spec.dt * np.array(marks)
+    fps = most / LENGTH
+    speed = fps * float(times[-1] - times[0]) / max(len(times) - 1, 1)
+    total = float(trial.made.reward[:length].sum())
+    panel = _painter(drawn, truth(trial), views, times, height)
+    world = recorded.run.agent.episode.env
+    return Film(world, poses[marks], panel, fps, speed, length, total, apart)
+
+
+def _marks(length: int, most: int) -> list[int]:
+    """The decisions after which there is a picture: evenly spaced, and the last."""
+    if most == 1:
+        return [length]
+    return sorted({*range(0, length, -(-length // most)), length})
+
+
+def _painter(
+    drawn: Drawn, true: list[np.ndarray], views: list[View], times: np.ndarray, side: int
+) -> Callable[[int], np.ndarray]:
+    """The panel [side, side, 3] of each view, drawn on one figure."""
+    import matplotlib
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    with matplotlib.rc_context(STYLE):
+        canvas = FigureCanvasAgg(Figure(figsize=(SIDE, SIDE), dpi=(side + 0.5) / SIDE))
+        axes: Any = canvas.figure.add_axes((0.04, 0.13, 0.92, 0.8))
+        panel = Panel(axes, drawn.low, drawn.high, true, drawn.limits(views), thick=1.5)
+        panel.name(drawn.outlines)
+        legend_below(axes)
+
+    def paint(number: int) -> np.ndarray:
+        panel.show(views[number])
+        axes.set_title(f"{times[number]:.1f} s")
+        canvas.draw()
+        return np.asarray(canvas.buffer_rgba())[..., :3].copy()
+
+    return paint
