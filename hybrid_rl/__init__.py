@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from hybrid_rl.errors import CheckpointError, DivergenceError, UsageError
     from hybrid_rl.evaluate import evaluate
     from hybrid_rl.fields import part
-    from hybrid_rl.outside.online import OnlineLearner
+    from hybrid_rl.run.online import OnlineLearner
     from hybrid_rl.run.retarget import retargeted
     from hybrid_rl.run.saved import Trained
     from hybrid_rl.settings.build import load as compose
@@ -103,7 +103,7 @@ _PUBLIC = {  # name -> its module, or MODULE:NAME; train and evaluate can be cal
     "EnvState": "types:EnvState",
     "Episode": "training.episode:Episode",
     "Loop": "training.loop:Loop",
-    "OnlineLearner": "outside.online:OnlineLearner",
+    "OnlineLearner": "run.online:OnlineLearner",
     "Physics": "envs.mujoco.physics:Physics",
     "Spec": "types:Spec",
     "Trained": "run.saved:Trained",

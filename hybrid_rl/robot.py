@@ -25,15 +25,14 @@ import jax
 
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import MODE, Argument, flag, number, read
-from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import UsageError
 from hybrid_rl.files.atomic import refuse_link
+from hybrid_rl.outside.actor import LOST, Actor
+from hybrid_rl.outside.robot_process import report
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.files.lock import lock
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.run.saved import build_run, load
-from hybrid_rl.training.actor import LOST, Actor
-from hybrid_rl.training.robot_process import report
 
 HIGHER = 10  # priority of the robot's process, where the system allows it
 ARGUMENTS = (
@@ -47,8 +46,6 @@ ARGUMENTS = (
 def _trained(folder: Path, mode: str) -> Actor:
     """The newest checkpoint, without exploration and without rows."""
     trained = load(folder)
-    if not isinstance(trained.episode.env, Robot):
-        raise UsageError(f"run={folder}: was trained on task={trained.task}, which is no robot")
     controller, params = trained.learner(None, mode)
     assert trained.agent is not None
     agent = replace(trained.agent, controller=controller)
@@ -60,41 +57,33 @@ def _learning(folder: Path) -> Actor:
     config = run_folder.read(folder, "run")
     prepare(config)
     run = build_run(config)
-    if not isinstance(run.agent.episode.env, Robot):
-        raise UsageError(f"run={folder}: is of task={config.task}, which is no robot")
     return Actor(run.agent, folder / "robot", run.seeds[0], most=config.total_steps)
 
 
-def _real_time() -> None:
-    """Ahead of all other processes; it needs a right that few users have."""
-    os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
-
-
-def _higher() -> None:
-    """Ahead of processes with the usual priority; likewise."""
-    os.setpriority(os.PRIO_PROCESS, 0, -HIGHER)
+def _hurry() -> None:
+    """Run ahead of all other processes, or of those with the usual priority, if the system lets."""
+    try:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
+    except OSError:
+        with suppress(OSError):
+            os.setpriority(os.PRIO_PROCESS, 0, -HIGHER)
 
 
 def main() -> None:
     """The command."""
     given: Any = read(__doc__, ARGUMENTS)[0]
-    for raised in (_real_time, _higher):  # before XLA makes its threads, which have the same
-        with suppress(OSError):
-            raised()
-            break
+    _hurry()  # before XLA makes its threads, which have the same priority
     folder = Path(given["run"])
     files = refuse_link(folder / "robot")
     if not files.is_dir():
         raise UsageError(f"run={folder}: holds no run of task=robot")
     with lock(files, "run"):
         (files / "stop").unlink(missing_ok=True)
-        _move(
-            _learning(folder) if given["learning"] else _trained(folder, given["mode"]),
-            given,
-        )
+        actor = _learning(folder) if given["learning"] else _trained(folder, given["mode"])
+        _move(actor, given["seconds"])
 
 
-def _move(actor: Actor, given: dict[str, Any]) -> None:
+def _move(actor: Actor, seconds: float) -> None:
     """Run the actor, and say what became of it."""
 
     def ask(number: int, frame: Any) -> None:
@@ -103,7 +92,7 @@ def _move(actor: Actor, given: dict[str, Any]) -> None:
     for name in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(name, ask)
     try:
-        actor.run(given["seconds"])
+        actor.run(seconds)
     except UsageError as error:
         report(actor.folder, str(error))
         raise

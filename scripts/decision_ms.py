@@ -3,7 +3,7 @@
     taskset -c 0 python -m scripts.decision_ms out=docs/results/decision_ms.json
     taskset -c 1 python -m scripts.decision_ms of=goals out=docs/results/planner_ms.json
 
-As the robot's process decides (training.decider.Decider), after a warm-up, with XLA in one thread;
+As the robot's process decides (outside.acting.Exploring), after a warm-up, with XLA in one thread;
 where there is a GPU, it computes. Parameters are the first ones: the time does not depend on them.
 For machines that do other work: `best` is the fastest decision, `processor` the time of the core in
 the fastest block. of=goals: who acts in scripts.new_goals, `planner=refits`, and the live window's
@@ -26,13 +26,13 @@ import numpy as np
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, one_of, read
 from hybrid_rl.errors import UsageError
+from hybrid_rl.outside.acting import Exploring
 from hybrid_rl.run.machine.provenance import device
 from hybrid_rl.run.retarget import retargeted
 from hybrid_rl.run.saved import Trained
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.tools.view.subject import quicker
 from hybrid_rl.training.agent import Agent
-from hybrid_rl.training.decider import Decider
 from hybrid_rl.types import Params
 from scripts.new_goals import overrides, rows
 from scripts.seeds import split_names
@@ -104,14 +104,14 @@ def main() -> None:
 
 def measured(agent: Agent, calls: int) -> dict[str, float]:
     """Milliseconds of a decision: median, 99%, and the fastest block by the processor's clock."""
-    decide = Decider(agent, 0, at_random=False)
-    params = jax.jit(lambda: agent.params(agent.init(jax.random.key(0))))()
+    decide = Exploring(agent, 0, random_steps=0)
+    decide.take(jax.jit(lambda: agent.params(agent.init(jax.random.key(0))))())
     obs, each, blocks = np.zeros(agent.spec.obs, np.float32), [], []
     for _ in range(calls // BLOCK):
         busy = time.process_time()
         for _ in range(BLOCK):
             began = time.perf_counter()
-            decide(params, obs, 100_000)
+            decide(obs, 100_000)
             each.append(1e3 * (time.perf_counter() - began))
         blocks.append(1e3 * (time.process_time() - busy) / BLOCK)
     return {

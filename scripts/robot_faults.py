@@ -25,8 +25,8 @@ from typing import Any
 import numpy as np
 
 from hybrid_rl.cli.arguments import Argument, number, read, whole
-from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.envs.adapters.stand_in import Cartpole
+from hybrid_rl.outside.row_log import RowLog
 from hybrid_rl.thesis.studies.recorded import read as recorded
 from hybrid_rl.types import Spec
 
@@ -38,7 +38,8 @@ ARGUMENTS = (
 )
 KINDS = ("kill the learner", "kill the robot's process", "stop the learner", "unplug the robot")
 KINDS += ("stop the robot's process", "damage the parameters", "tear a row")
-PATIENCE_S = 60.0  # until decisions are taken again
+PATIENCE = 3.0  # until decisions are taken again, in times of the first start of both processes
+LEAST_S = 60.0  # of patience
 
 
 class Trial:
@@ -58,6 +59,13 @@ class Trial:
         self.line += ["total_steps=100000", "checkpoint_every=200", "log_every=100"]
         self.line += [f"run_dir={self.folder}"]
         self.learner = self._learner(self.line)
+        self.patience = float("inf")  # [s]
+
+    def start(self) -> float:
+        """[s] until the first decisions, which a busy machine makes long; sets the patience."""
+        seconds = self.again()
+        self.patience = max(LEAST_S, PATIENCE * seconds)
+        return seconds
 
     def _learner(self, line: list[str]) -> subprocess.Popen:
         return subprocess.Popen(line, stdout=self.console, stderr=self.console)
@@ -69,16 +77,18 @@ class Trial:
         return file.stat().st_size // size if file.exists() else 0
 
     def robot(self) -> int:
-        """The robot's process."""
-        found = subprocess.run(
-            ["pgrep", "-f", f"hybrid_rl.robot run={self.folder}"], capture_output=True, text=True
-        )
-        return int(found.stdout.split()[0]) if found.stdout else 0
+        """The robot's process, which may be about to start."""
+        line, began = ["pgrep", "-f", f"hybrid_rl.robot run={self.folder}"], time.monotonic()
+        while time.monotonic() - began < self.patience and self.learner.poll() is None:
+            if found := subprocess.run(line, capture_output=True, text=True).stdout:
+                return int(found.split()[0])
+            time.sleep(0.1)
+        raise SystemExit(f"no robot's process; see {self.console.name}")
 
     def again(self) -> float:
-        """[s] until 30 more decisions are taken; infinite after PATIENCE_S."""
+        """[s] until 30 more decisions are taken; infinite if none come, or the learner ended."""
         first, began = self.rows(), time.monotonic()
-        while time.monotonic() - began < PATIENCE_S:
+        while time.monotonic() - began < self.patience and self.learner.poll() is None:
             if self.rows() >= first + 30:
                 return time.monotonic() - began
             time.sleep(0.05)
@@ -86,7 +96,6 @@ class Trial:
 
     def fault(self, kind: str) -> None:
         """Make a fault, one of KINDS."""
-        robot = self.robot()
         match kind:
             case "kill the learner":
                 self.learner.kill()
@@ -98,9 +107,9 @@ class Trial:
                     shutil.rmtree(self.folder)
                 self.learner = self._learner(resume if saved else self.line)
             case "kill the robot's process":
-                os.kill(robot, signal.SIGKILL)
+                os.kill(self.robot(), signal.SIGKILL)
             case "stop the learner" | "stop the robot's process":
-                who = self.learner.pid if "learner" in kind else robot
+                who = self.learner.pid if "learner" in kind else self.robot()
                 os.kill(who, signal.SIGSTOP)
                 time.sleep(self.random.uniform(0.1, 3))
                 os.kill(who, signal.SIGCONT)
@@ -113,14 +122,14 @@ class Trial:
                 data = file.read_bytes()
                 file.write_bytes(data[: self.random.randrange(len(data))])
             case "tear a row":
-                os.kill(robot, signal.SIGKILL)
+                os.kill(self.robot(), signal.SIGKILL)
                 with open(self.folder / "robot" / "rows", "ab") as file:
                     file.write(os.urandom(self.random.randrange(1, 90)))
 
     def end(self) -> dict[str, Any]:
         """Stop both; what the files hold."""
         self.learner.send_signal(signal.SIGINT)
-        code = self.learner.wait(60)
+        code = self.learner.wait(self.patience)
         self.stand.terminate()
         report = self.stand.communicate()[0].strip().splitlines()[-1]
         log, sound = RowLog(self.folder / "robot" / "rows", SPEC), 0
@@ -154,7 +163,7 @@ def main() -> None:
     given: Any = read(__doc__, ARGUMENTS)[0]
     trial = Trial(given["faulty"], given["seed"])
     faults = []
-    print(f"first decisions after {trial.again():.1f} s", flush=True)
+    print(f"first decisions after {trial.start():.1f} s", flush=True)
     for i in range(given["faults"]):
         kind = trial.random.choice(KINDS)
         trial.fault(kind)

@@ -9,8 +9,8 @@ import numpy as np
 from omegaconf import DictConfig
 from tiny import SMALL, demonstrate
 
+from hybrid_rl.outside.loops import loop_of
 from hybrid_rl.settings import build as config
-from hybrid_rl.training.loops import loop_of
 
 LINEAR = ("koopman", "gp_")  # begin the names of methods without networks to shrink
 

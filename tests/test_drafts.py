@@ -10,23 +10,23 @@ import numpy as np
 import pytest
 from tiny import contents
 
-from hybrid_rl.data import handover
-from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.adapters.stand_in import Cartpole
 from hybrid_rl.errors import CheckpointError, UsageError
 from hybrid_rl.files.atomic import open_own, own_folder, refuse_link, replacing
+from hybrid_rl.outside import handover
+from hybrid_rl.outside.robot_process import RobotProcess, report
+from hybrid_rl.outside.row_log import RowLog
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.files.lock import lock
 from hybrid_rl.run.logs.log import RunLog
 from hybrid_rl.run.logs.loggers import CSV, Begun, WandB
 from hybrid_rl.run.logs.tensorboard import TensorBoard
-from hybrid_rl.training.robot_process import RobotProcess, report
 from hybrid_rl.types import Spec
 
 PACKAGE = Path(__file__).resolve().parents[1] / "hybrid_rl"
 ROW = {"step": 5, "seed": 0, "wall_s": 1.0, "eval/return": -3.0}
-WRITERS = ("run/**/*.py", "training/*.py", "data/*_log.py", "data/handover.py", "robot.py")
+WRITERS = ("run/**/*.py", "training/*.py", "robot.py")
 WRITERS += ("outside/*.py", "tools/tuner/*.py", "cli/sweep.py", "files/atomic.py")
 OPENS = r".+\.(write_text|write_bytes|touch|mk\w*dirs?|mkfifo|copy2|copyfile)|(.*\.)?(open|fdopen)"
 OPENS += r"|(np|OmegaConf)\.save\w*"
@@ -135,7 +135,7 @@ WRITE = {  # what would be written, by the file or the folder that is a link
 def test_no_writer_follows_a_link(tmp_path, monkeypatch, name, kind):
     """Nor makes the file that it would lead to, nor reads without end."""
     monkeypatch.setattr("subprocess.Popen", lambda *_, **__: pytest.fail("started"))
-    monkeypatch.setattr("hybrid_rl.training.robot_process._lower", lambda: None)
+    monkeypatch.setattr("hybrid_rl.outside.robot_process._lower", lambda: None)
     run, theirs = tmp_path / "run", tmp_path / "precious"
     (run / name).parent.mkdir(parents=True)
     if kind == "folder":

@@ -18,14 +18,14 @@ import hybrid_rl
 from hybrid_rl import evaluate, render
 from hybrid_rl.analysis import film
 from hybrid_rl.cli import command
-from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.envs import check
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.errors import UsageError
+from hybrid_rl.outside.actor import Actor
+from hybrid_rl.outside.row_log import RowLog
 from hybrid_rl.run.saved import load
 from hybrid_rl.settings import build as config
-from hybrid_rl.training.actor import Actor
 
 pytestmark = pytest.mark.turns(3)
 

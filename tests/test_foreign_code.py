@@ -58,8 +58,8 @@ NAMES = [
     *("__main__:main", "sys:exit", "hydra.utils:instantiate"),
     *("gymnasium:make", "gymnasium:register", "gymnasium.envs.registration:make"),
     *("gymnasium.envs.registration:load_env_creator", "gymnasium.utils.play:play"),
-    *("hybrid_rl.robot:main", "hybrid_rl.data.row_log:RowLog", "hybrid_rl.data.trained:save"),
-    *("hybrid_rl.training.robot_process:RobotProcess", "hybrid_rl.envs.adapters.gymnasium:make"),
+    *("hybrid_rl.robot:main", "hybrid_rl.outside.row_log:RowLog", "hybrid_rl.data.trained:save"),
+    *("hybrid_rl.outside.robot_process:RobotProcess", "hybrid_rl.envs.adapters.gymnasium:make"),
     *(
         "hybrid_rl.envs.adapters.external:gymnasium",
         "hybrid_rl.files.targets:imported",

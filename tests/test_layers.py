@@ -4,8 +4,8 @@ types, errors, version, fields, files
       ^
 core, networks
       ^
-models controllers ... data <- training <- settings <- run <- outside, analysis <- commands
-                                                       cli              <- thesis
+models controllers ... data <- training <- settings, outside <- run <- analysis <- commands
+                                                                cli             <- thesis
 parts never import each other: YAML files combine them; some read files by data/archive
 a part may be a folder, whose files import each other
 
@@ -48,15 +48,14 @@ ALLOWED = {
     "beliefs": {*SHARED, "files", "archive"},
     "policies": {*SHARED, "archive"},
     "settings": CONFIG,  # from words to the parts that YAML names
-    "run": {*CONFIG, "core", "archive", "data", "controllers", "run"},  # a run on the host
+    "outside": {"errors", *SHARED, "files", "envs", "data", "training", "outside"},
+    "run": {*CONFIG, "core", "archive", "data", "controllers", "outside", "run"},  # on the host
     "cli": {*CONFIG, "run", "cli"},  # what the commands share
-    "outside": {*SHARED, *CONFIG, "data", "run", "outside"},
-    "analysis": {*SHARED, *CONFIG, "data", "run", "cli", "analysis"},
+    "analysis": {*SHARED, *CONFIG, "data", "outside", "run", "cli", "analysis"},
     # as a user's project would, and nothing but the command `render` imports it
     "thesis": {*SHARED, *CONFIG, "data", "beliefs", "run", "cli", "analysis", "thesis"},
 }
-HYDRA = {"command", "settings", "run", "cli", "outside", "tools"}
-HYDRA |= {"analysis", "thesis"}
+HYDRA = {"command", "settings", "run", "cli", "tools", "analysis", "thesis"}
 VAGUE = {"utils", "util", "common", "base", "helpers", "helper", "misc", "manager"}
 
 over_files = pytest.mark.parametrize("file", FILES, ids=lambda f: str(f.relative_to(ROOT)))

@@ -10,8 +10,8 @@ import numpy as np
 from hybrid_rl.analysis import drawing
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.envs.mujoco.scenery import check_drawable, pose_of, scene_of
-from hybrid_rl.training.acting import TrainedPolicy
-from hybrid_rl.training.host_loop import seed_of
+from hybrid_rl.outside.acting import TrainedPolicy
+from hybrid_rl.outside.host_loop import seed_of
 from hybrid_rl.training.rollout import evaluation_keys, rollout
 
 FASTEST = 60.0  # [1/s] pictures at most; faster worlds skip some

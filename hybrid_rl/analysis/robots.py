@@ -14,9 +14,9 @@ import numpy as np
 
 from hybrid_rl.analysis.results import find
 from hybrid_rl.analysis.style import blank, legend_below, line_styles, words
-from hybrid_rl.data.row_log import row_type
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import UsageError
+from hybrid_rl.outside.row_log import row_type
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.saved import build_run
 

@@ -136,25 +136,20 @@ def check_task(
 
     episode: with `action_repeat`, the steps of `world` in a decision; None: 1.
     """
-    if str(arrays["task"]) != task:
-        raise ValueError(f"{prefix} is of task {arrays['task']}, not of {task}")
-    spec = world.spec
-    for name, has, needs in zip(
-        ("obs", "action"), arrays["sizes"].tolist(), (spec.obs, spec.act), strict=True
-    ):
-        if has != needs:
-            raise ValueError(f"{prefix} {name} has {has} numbers, this {task} has {needs}")
-    dt = spec.dt * (episode or {"action_repeat": 1})["action_repeat"]
-    if not np.isclose(arrays["dt"], dt):
-        raise ValueError(f"{prefix} decides every {arrays['dt']:g} s, this {task} {dt:g} s")
+    spec, repeat = world.spec, (episode or {"action_repeat": 1})["action_repeat"]
+    obs, act = arrays["sizes"].tolist()
+    has = {"task": str(arrays["task"]), "obs": obs, "action": act, "dt": float(arrays["dt"])}
+    needs = {"task": task, "obs": spec.obs, "action": spec.act, "dt": spec.dt * repeat}
+    for name, value in has.items():
+        if value != needs[name] and not (name == "dt" and np.isclose(value, needs[name])):
+            raise ValueError(f"{prefix} is of {name} {value}; this run has {name} {needs[name]}")
 
 
 def part_arrays(prefix: str, params: PyTree, part: str = "policy") -> dict[str, np.ndarray]:
     """The parameters of a part, of PARTS, by their names in a file."""
     leaves = jax.tree_util.tree_leaves_with_path(params)
     arrays = {_name(path, part): np.asarray(leaf) for path, leaf in leaves}
-    _check_finite(prefix, arrays)
-    return arrays
+    return fitting(prefix, arrays, arrays)
 
 
 def policy(
@@ -173,33 +168,30 @@ def policy(
     arrays = read(prefix, file, hint=WRITE)
     check_task(prefix, arrays, task, world, episode)
     leaves, tree = jax.tree_util.tree_flatten_with_path(like)
-    shapes = {_name(path, part): leaf.shape for path, leaf in leaves}
     others = tuple(f"{name}/" for name in PARTS if name != part)
-    for name in sorted({*shapes, *arrays} - {*HEADER, ABOUT}):
-        if name.startswith(others):
-            continue
-        if name not in arrays:
-            raise ValueError(f"{prefix} lacks {name}, which this {part} has")
-        if name not in shapes:
-            raise ValueError(f"{prefix} has {name}, which this {part} lacks")
-        if arrays[name].shape != shapes[name]:
-            raise ValueError(
-                f"{prefix} {name} is {arrays[name].shape}, this {part}'s is {shapes[name]}"
-            )
-    with np.errstate(all="ignore"):  # what becomes infinite is refused
-        names = {_name(path, part): leaf.dtype for path, leaf in leaves}
-        kept = {name: arrays[name].astype(dtype) for name, dtype in names.items()}
-    _check_finite(prefix, kept)
+    names = (name for name in arrays if not name.startswith(others))
+    own = {name: arrays[name] for name in names if name not in (*HEADER, ABOUT)}
+    kept = fitting(prefix, own, {_name(path, part): leaf for path, leaf in leaves})
     return jax.tree.unflatten(tree, map(jnp.asarray, kept.values()))
+
+
+def fitting(
+    prefix: str, arrays: Mapping[str, np.ndarray], like: Mapping[str, Any]
+) -> dict[str, np.ndarray]:
+    """The arrays, finite, in the shapes, types and order of those of `like`, all and no others."""
+    for name in sorted({*arrays, *like}):
+        has, needs = (of[name].shape if name in of else "absent" for of in (arrays, like))
+        if has != needs:
+            raise ValueError(f"{prefix} {name} is {has}; it must be {needs}")
+    with np.errstate(all="ignore"):  # what becomes infinite is refused
+        kept = {name: arrays[name].astype(leaf.dtype) for name, leaf in like.items()}
+    for name, array in kept.items():
+        if not (finite := np.isfinite(array)).all():
+            entry = np.argwhere(~finite)[0].tolist()
+            raise ValueError(f"{prefix} {name} is not finite at {entry}")
+    return kept
 
 
 def _name(path: Any, part: str) -> str:
     """The name of the parameter of a part at `path`."""
     return "/".join([part, jax.tree_util.keystr(path, simple=True, separator="/")])
-
-
-def _check_finite(prefix: str, arrays: Mapping[str, np.ndarray]) -> None:
-    """Raise ValueError for an array that is not finite."""
-    for name, array in arrays.items():
-        if not np.isfinite(array).all():
-            raise ValueError(f"{prefix} {name} is not finite")

@@ -13,10 +13,10 @@ truncated.
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from statistics import mode
 from typing import Any
 
 import numpy as np
+from jax import ShapeDtypeStruct
 
 from hybrid_rl.data import archive
 from hybrid_rl.protocols import Env
@@ -37,40 +37,26 @@ def save(
 
 def load(file: Path | str) -> dict[str, np.ndarray]:
     """The arrays of `file` by name; those of decisions in float32."""
-    prefix = f"demonstrations={file}:"
-    arrays = archive.read(prefix, file, (*COLUMNS, "episode"), RECORD)
-    _check_sizes(prefix, arrays)
-    for name in COLUMNS:
-        with np.errstate(over="ignore"):  # what becomes infinite is refused
-            arrays[name] = arrays[name].astype(np.float32)
-        finite = np.isfinite(arrays[name].reshape(len(arrays[name]), -1)).all(1)
-        if not finite.all():
-            raise ValueError(f"{prefix} {name} is not finite in row {finite.argmin()}")
-    if np.abs(arrays["action"]).max() > 1:
-        raise ValueError(f"{prefix} action must lie in [-1, 1]")
-    last = np.append(np.diff(arrays["episode"]) != 0, True)
+    prefix, names = f"demonstrations={file}:", (*COLUMNS, "episode")
+    arrays = archive.read(prefix, file, names, RECORD)
+    (o, m), count = arrays["sizes"].tolist(), len(np.atleast_1d(arrays["obs"]))
+    sizes = {"obs": (count, o), "action": (count, m), "next_obs": (count, o)}
+    like = {name: ShapeDtypeStruct(sizes.get(name, (count,)), np.float32) for name in COLUMNS}
+    like["episode"] = ShapeDtypeStruct((count,), arrays["episode"].dtype)
+    arrays |= archive.fitting(prefix, {name: arrays[name] for name in names}, like)
+    last = np.append(np.diff(arrays["episode"]) != 0, np.ones(min(count, 1), bool))
     ends = arrays["terminated"] + arrays["truncated"] > 0
-    if (ends & ~last).any():
-        raise ValueError(
-            f"{prefix} an episode continues after its end, in row {(ends & ~last).argmax()}"
-        )
+    wrong = {
+        "there is no decision": not count,
+        "action must lie in [-1, 1]": (np.abs(arrays["action"]) > 1).any(1),
+        "episodes must follow one another": np.diff(arrays["episode"]) < 0,
+        "an episode continues after its end": ends & ~last,
+    }
+    for words, rows in wrong.items():
+        if np.any(rows):
+            raise ValueError(f"{prefix} {words}, in row {np.argmax(rows)}")
     arrays["truncated"][last & ~ends] = 1
     return arrays
-
-
-def _check_sizes(prefix: str, arrays: dict[str, np.ndarray]) -> None:
-    """Raise ValueError for inconsistent sizes, or episodes out of order."""
-    (o, m), names = arrays["sizes"].tolist(), (*COLUMNS, "episode")
-    count = mode(len(np.atleast_1d(arrays[name])) for name in names)  # the usual one
-    if not count:
-        raise ValueError(f"{prefix} holds no decision")
-    shapes = {"obs": (count, o), "action": (count, m), "next_obs": (count, o)}
-    for name in names:
-        shape = shapes.get(name, (count,))
-        if arrays[name].shape != shape:
-            raise ValueError(f"{prefix} {name} is {arrays[name].shape}, not {shape}")
-    if (np.diff(arrays["episode"]) < 0).any():
-        raise ValueError(f"{prefix} episodes must follow one another")
 
 
 @dataclass(frozen=True)

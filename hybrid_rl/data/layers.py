@@ -18,25 +18,17 @@ from hybrid_rl.networks import Perceptron
 from hybrid_rl.types import Spec
 
 OPSET, IR = 17, 8  # of ONNX: runtimes refuse files that are newer than they are
-NUMPY = {  # activation or squashing -> NumPy's expression of z
-    "relu": "np.maximum({}, 0)",
-    "sin": "np.sin({})",
-    "tanh": "np.tanh({})",
-    "silu": "silu({})",
-    "elu": "elu({})",
-    "clip": "np.clip({}, -1, 1)",
+FUNCTIONS = {  # activation or squashing of z -> NumPy's, C's of a double, ONNX' operator
+    "relu": ("np.maximum({}, 0)", "z > 0 ? z : 0", "Relu"),
+    "sin": ("np.sin({})", "sin(z)", "Sin"),
+    "tanh": ("np.tanh({})", "tanh(z)", "Tanh"),
+    "silu": ("silu({})", "z / (1 + exp(-z))", ""),
+    "elu": ("elu({})", "z > 0 ? z : expm1(z)", "Elu"),
+    "clip": ("np.clip({}, -1, 1)", "z < -1 ? -1 : z > 1 ? 1 : z", ""),
 }
 DEFINED = {  # those that NumPy lacks
     "silu": "def silu(z):\n    return z / (1 + np.exp(-z))\n\n\n",
     "elu": "def elu(z):\n    return np.where(z > 0, z, np.expm1(np.minimum(z, 0)))\n\n\n",
-}
-C = {  # the same of a double z
-    "relu": "z > 0 ? z : 0",
-    "sin": "sin(z)",
-    "tanh": "tanh(z)",
-    "silu": "z / (1 + exp(-z))",
-    "elu": "z > 0 ? z : expm1(z)",
-    "clip": "z < -1 ? -1 : z > 1 ? 1 : z",
 }
 SCRIPT = '''"""The policy of {task}: obs [{o}] -> action [{m}] {within}, every {dt:g} s."""
 
@@ -102,17 +94,13 @@ def save_numpy(out: Path, task: str, spec: Spec, net: Perceptron) -> Path:
     """
     archive.write(out, task, spec, dict(_arrays(net)))
     last, layer = len(net.weights), 'x @ P[f"W{i}"] + P[f"b{i}"]'
-    squash = NUMPY[net.squash].format(f'x @ P["W{last}"] + P["b{last}"]')
+    squash = FUNCTIONS[net.squash][0].format(f'x @ P["W{last}"] + P["b{last}"]')
     code = SCRIPT.format(
-        task=repr(task),
-        o=int(spec.obs),
-        m=int(spec.act),
-        dt=float(spec.dt),
+        **_about(repr(task), spec, net),
         last=last,
         defined=DEFINED.get(net.activation, ""),
-        activation=NUMPY[net.activation].format(layer),
+        activation=FUNCTIONS[net.activation][0].format(layer),
         squash=squash if net.span is None else f'P["middle"] + P["half"] * {squash}',
-        within=_within(net),
     )
     script = out.with_suffix(".py")
     with replacing(script) as draft:
@@ -130,21 +118,16 @@ def save_c(out: Path, task: str, spec: Spec, net: Perceptron) -> str:
         f"static const float {name}_{key}[{value.size}] = {{{_floats(value)}}};"
         for key, value in _arrays(net)
     ]
-    functions = [*[net.activation] * (len(net.weights) - 1), net.squash]
+    names = [*[net.activation] * (len(net.weights) - 1), net.squash]
+    functions = [FUNCTIONS[each][1] for each in names]
     layers = [
-        LAYER.format(
-            number=i, name=name, inputs=W.shape[0], outputs=W.shape[1], function=C[functions[i - 1]]
-        )
-        for i, W in enumerate(net.weights, 1)
+        LAYER.format(number=i, name=name, inputs=len(W), outputs=W.shape[1], function=function)
+        for i, (W, function) in enumerate(zip(net.weights, functions, strict=True), 1)
     ]
     text = HEADER.format(
-        task=task,
-        o=int(spec.obs),
-        m=int(spec.act),
-        dt=float(spec.dt),
+        **_about(task, spec, net),
         guard=name.upper(),
         name=name,
-        within=_within(net),
         action="a[i]" if net.span is None else f"{name}_middle[i] + {name}_half[i] * a[i]",
         widest=max(max(W.shape) for W in net.weights),
         arrays="\n".join(lines),
@@ -199,7 +182,7 @@ def _function(node: Any, function: str, z: str, out: str) -> str:
         return node("Mul", [z, node("Sigmoid", [z], f"{out}_gate")], out)
     if function == "clip":
         return node("Clip", [z, "low", "high"], out)
-    return node({"relu": "Relu", "sin": "Sin", "tanh": "Tanh", "elu": "Elu"}[function], [z], out)
+    return node(FUNCTIONS[function][2], [z], out)
 
 
 def _arrays(net: Perceptron) -> Iterator[tuple[str, np.ndarray]]:
@@ -213,13 +196,20 @@ def _arrays(net: Perceptron) -> Iterator[tuple[str, np.ndarray]]:
         yield from zip(("middle", "half"), net.span, strict=True)
 
 
-def _within(net: Perceptron) -> str:
-    """Where an action lies, in words."""
-    if net.span is None:
-        return "in [-1, 1]"
-    middle, half = net.span
-    low, high = (", ".join(f"{x:g}" for x in ends) for ends in (middle - half, middle + half))
-    return f"from [{low}] to [{high}]"
+def _about(task: str, spec: Spec, net: Perceptron) -> dict[str, Any]:
+    """The task, its sizes and time step, and where an action lies, in words."""
+    within = "in [-1, 1]"
+    if net.span is not None:
+        middle, half = net.span
+        low, high = (", ".join(f"{x:g}" for x in ends) for ends in (middle - half, middle + half))
+        within = f"from [{low}] to [{high}]"
+    return {
+        "task": task,
+        "o": int(spec.obs),
+        "m": int(spec.act),
+        "dt": float(spec.dt),
+        "within": within,
+    }
 
 
 def _floats(values: np.ndarray) -> str:

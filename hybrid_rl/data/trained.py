@@ -55,17 +55,12 @@ def _halved(leaf: Any) -> np.ndarray:
 def described(file: str) -> Any:
     """The policy that `file` describes: its class and fields, without parameters."""
     prefix = f"policy.file={file}:"
-    text = archive.read(prefix, file, hint=archive.WRITE).get(archive.ABOUT)
-    if text is None:
-        raise ValueError(f"{prefix} does not describe its policy; {archive.WRITE}")
+    arrays = archive.read(prefix, file, hint=archive.WRITE)
     try:
-        node = json.loads(str(text))["policy"]
+        node = json.loads(str(arrays[archive.ABOUT]))["policy"]
     except (ValueError, TypeError, KeyError, RecursionError) as error:
-        raise ValueError(f"{prefix} its description lacks policy, or is damaged") from error
-    policy = part(prefix, file, node)
-    if not hasattr(policy, "mean"):
-        raise ValueError(f"{prefix} describes no policy")
-    return policy
+        raise ValueError(f"{prefix} does not describe its policy; {archive.WRITE}") from error
+    return part(prefix, file, node)
 
 
 def part(prefix: str, file: str, node: Any) -> Any:

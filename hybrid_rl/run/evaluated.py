@@ -10,9 +10,9 @@ import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.envs.adapters.external import External
+from hybrid_rl.outside.host_loop import HostEvaluator
 from hybrid_rl.run.evaluations import finish_episodes
 from hybrid_rl.run.saved import Trained
-from hybrid_rl.training.host_loop import HostEvaluator
 from hybrid_rl.training.rollout import advance, begin, evaluation_keys
 
 

@@ -10,9 +10,9 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from hybrid_rl.outside.host_loop import HostEvaluator, HostLoop
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run.schedule import Pace
-from hybrid_rl.training.host_loop import HostEvaluator, HostLoop
 from hybrid_rl.training.loop import REPLICATED, SEEDS, Loop, compile_lowered
 from hybrid_rl.training.rollout import advance, begin, evaluation_keys, scores
 from hybrid_rl.types import Params

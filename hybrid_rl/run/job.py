@@ -12,6 +12,7 @@ from omegaconf import DictConfig, OmegaConf, open_dict
 from hybrid_rl.errors import FAULTS, UsageError
 from hybrid_rl.files.atomic import naming, refuse_link
 from hybrid_rl.networks import precision
+from hybrid_rl.outside.loops import loop_of
 from hybrid_rl.run import folder
 from hybrid_rl.run.checkpoints.store import Shelf, Store
 from hybrid_rl.run.files.integrity import write_text
@@ -26,7 +27,6 @@ from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings.build import Run
 from hybrid_rl.training.axis import Axis
 from hybrid_rl.training.loop import Loop
-from hybrid_rl.training.loops import loop_of
 
 
 class Output:

@@ -19,6 +19,7 @@ from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.errors import UsageError
+from hybrid_rl.outside.loops import loop_of
 from hybrid_rl.run import folder, start
 from hybrid_rl.run.logs.records import flatten_keys
 from hybrid_rl.settings import build as configuration
@@ -28,7 +29,6 @@ from hybrid_rl.settings.complete import LACKING, refusal, select, source
 from hybrid_rl.settings.words import raw_values
 from hybrid_rl.training.axis import Axis, DifferError
 from hybrid_rl.training.loop import Loop
-from hybrid_rl.training.loops import loop_of
 from hybrid_rl.training.rollout import act, advance, begin
 
 

@@ -28,6 +28,7 @@ from hybrid_rl.data.trained import SavedPolicy, part
 from hybrid_rl.envs.mujoco.physics import resolve
 from hybrid_rl.errors import UsageError, printable
 from hybrid_rl.files import targets as parts
+from hybrid_rl.outside.acting import TrainedPolicy
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.checkpoints.store import read_part
@@ -37,7 +38,6 @@ from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings.build import Run
 from hybrid_rl.settings.values import check
-from hybrid_rl.training.acting import TrainedPolicy
 from hybrid_rl.training.agent import Agent, AgentState
 from hybrid_rl.training.contract import needs_world
 from hybrid_rl.training.episode import Episode

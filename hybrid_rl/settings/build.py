@@ -1,6 +1,5 @@
 """From overrides to parts: compose conf/, check it, build a run."""
 
-import inspect
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
@@ -215,15 +214,12 @@ def _episode(parts: DictConfig) -> tuple[Episode, tuple[str, ...]]:
     """The episodes of the sections `env` and `episode`, and notes about a world of the user's."""
     env = _instantiate(parts.env, "env")
     notes = check_world(env)
-    given = _instantiate(parts.episode, "episode")
-    try:
-        inspect.signature(Episode).bind(env, **given)
-    except TypeError as error:
-        raise UsageError(f"episode: {error}") from error
+    target = {"_target_": "hybrid_rl.training.episode.Episode", "env": env}
+    given = target | _instantiate(parts.episode, "episode")
     given |= {name: _instantiate(parts.get(name) or None, name) for name in PAID}
     if isinstance(env, External | Robot):
         given |= checks.time_limit(env, given)
-    return Episode(env, **given), notes
+    return build_part(given, where="episode"), notes
 
 
 def expert(config: DictConfig) -> Controller:

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import jax
@@ -13,7 +12,7 @@ from jax import Array
 from hybrid_rl.core.batching import repeat, where
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
 from hybrid_rl.data.replay import Memory, Replay, as_batch
-from hybrid_rl.fields import LARGEST, Count, FieldError, Natural, check
+from hybrid_rl.fields import LARGEST, Count, Natural, part
 from hybrid_rl.protocols import Controller, Learner, Model
 from hybrid_rl.training import contract
 from hybrid_rl.training.contract import needs_world
@@ -36,7 +35,7 @@ class AgentState:
     numbers: dict[str, Array] = struct.field(default_factory=dict)  # [] of a learner's axis
 
 
-@dataclass(frozen=True)
+@part
 class Agent:
     """A method that trains in `num_envs` environments.
 
@@ -55,18 +54,13 @@ class Agent:
     controller: Controller
     learners: Mapping[str, Any]  # a Learner each; no protocol has both its fields and ClassVars
     replay: Replay
-    num_envs: int = 1
-    random_steps: int = 0
-    pretrain: int = 0  # gradient steps of each learner before the first decision
+    num_envs: Count = 1
+    random_steps: Natural = 0
+    pretrain: Natural = 0  # gradient steps of each learner before the first decision
     first_update: int = 0  # decisions before any learning; < 0: so many are in the memory already
     frozen: tuple[str, ...] = ()  # learners that make no updates
 
     def __post_init__(self) -> None:
-        for name, kind in (("num_envs", Count), ("random_steps", Natural), ("pretrain", Natural)):
-            try:
-                check(self, name, kind)
-            except FieldError as error:
-                raise ValueError(error.line) from error
         if self.pretrain and not self.replay.num_demonstrated(self.num_envs):
             raise ValueError(
                 f"pretrain={self.pretrain}: the memory has no demonstrations to learn from; "
@@ -91,8 +85,8 @@ class Agent:
         """
         contract.check(self, [self.controller, *controllers])
         longest = min(decisions, self.episode.steps * self.num_envs)
-        for part in self.learners.values():
-            if (check := getattr(part, "check", None)) is not None:
+        for learner in self.learners.values():
+            if (check := getattr(learner, "check", None)) is not None:
                 check(longest)
         jax.eval_shape(lambda: self.controller.init(self.spec))
         if not self.learners and needs_world(self.controller):  # not every planner can
@@ -276,10 +270,6 @@ def update_schedule(name: str, learner: Learner, num_envs: int) -> tuple[int, in
     """(n, k) of a learner: n updates after every k decisions of each environment."""
     if learner.data == "latest":
         return 1, learner.every
-    if not isinstance(learner.batch_size, int) or learner.batch_size < 1:
-        raise ValueError(
-            f"{name}_learner.batch_size={learner.batch_size}: must be a whole number, 1 or more"
-        )
     per_round = learner.updates * num_envs
     count = max(per_round, 1 / per_round) if per_round > 0 else math.nan
     if count <= LARGEST and float(count).is_integer():

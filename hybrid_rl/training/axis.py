@@ -76,27 +76,22 @@ def _differing(nodes: Sequence[Any], path: str, kind: Any = float) -> Iterator[t
                 raise DifferError(path)
             yield path, tuple(map(float, nodes))
         return
-    if any(type(node) is not type(first) for node in nodes):
+    below = [_below(node) for node in nodes]
+    same = all(type(node) is type(first) for node in nodes)
+    same &= all([*each] == [*below[0]] for each in below)
+    if not same or not (below[0] or all(np.array_equal(node, first) for node in nodes)):
         raise DifferError(path)
-    for name, each, kind in _below(nodes, path):
-        yield from _differing(each, f"{path}.{name}".lstrip("."), kind)
+    for name, (_, kind) in below[0].items():
+        inner = [each[name][0] for each in below]
+        yield from _differing(inner, f"{path}.{name}".lstrip("."), kind)
 
 
-def _below(nodes: Sequence[Any], path: str) -> Iterator[tuple[str, Sequence[Any], Any]]:
-    """The name, the values in all nodes and the type of what is right below them."""
-    first = nodes[0]
-    if is_dataclass(first):
-        for each in fields(first):
-            yield each.name, [getattr(node, each.name) for node in nodes], each.type
-    elif isinstance(first, Mapping):
-        if any(list(node) != list(first) for node in nodes):
-            raise DifferError(path)
-        for name in first:
-            yield str(name), [node[name] for node in nodes], float
-    elif isinstance(first, (list, tuple)):
-        if any(len(node) != len(first) for node in nodes):
-            raise DifferError(path)
-        for i in range(len(first)):
-            yield str(i), [node[i] for node in nodes], int  # a list of numbers is no number
-    elif not all(np.array_equal(node, first) for node in nodes):
-        raise DifferError(path)
+def _below(node: Any) -> dict[str, tuple[Any, Any]]:
+    """The values right below a node by name, each with the type of its field."""
+    if is_dataclass(node):
+        return {each.name: (getattr(node, each.name), each.type) for each in fields(node)}
+    if isinstance(node, Mapping):
+        return {str(name): (value, float) for name, value in node.items()}
+    if isinstance(node, (list, tuple)):  # a list of numbers is no number
+        return {str(i): (value, int) for i, value in enumerate(node)}
+    return {}

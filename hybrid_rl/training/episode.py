@@ -7,9 +7,7 @@ learning"). With `randomise` each episode has another body (`envs/mujoco/randomi
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
 from functools import partial
-from numbers import Real
 from typing import Any
 
 import jax
@@ -21,18 +19,26 @@ from hybrid_rl.core.batching import when_any, where
 from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.envs.mujoco.randomised import Ranges
 from hybrid_rl.errors import UsageError
-from hybrid_rl.fields import Count, FieldError, Natural, NotNegative, check
+from hybrid_rl.fields import Count, FieldError, Natural, NotNegative, part
 from hybrid_rl.protocols import Constraint, Env, Goal
 from hybrid_rl.protocols.contract import Contract
-from hybrid_rl.training.wrappers import put_around
+from hybrid_rl.training.wrappers import (
+    Constrained,
+    Delayed,
+    Disturbed,
+    Limited,
+    Paid,
+    Randomised,
+    Repeated,
+    Sensed,
+)
 from hybrid_rl.types import EnvState, Spec
 
 # Environments always compute in full precision, networks perhaps with less on an accelerator.
 EXACT = partial(jax.default_matmul_precision, "highest")
-OWN = {"steps": Count, "action_repeat": Count, "delay": Natural, "action_noise": NotNegative}
 
 
-@dataclass(frozen=True)
+@part
 class Episode:
     """An environment with a time limit.
 
@@ -50,52 +56,33 @@ class Episode:
     """
 
     env: Env
-    steps: int = 1000  # decisions until the time limit
-    action_repeat: int = 1
-    delay: int = 0  # decisions until an action arrives
-    sensor_noise: tuple[float, ...] | float = 0.0  # std of the observation: of all entries, or [o]
-    action_noise: float = 0.0  # [u] std of what is added to an action when it arrives
+    steps: Count = 1000  # decisions until the time limit
+    action_repeat: Count = 1
+    delay: Natural = 0  # decisions until an action arrives
+    sensor_noise: NotNegative | tuple[NotNegative, ...] = 0.0  # std of the observation, or [o]
+    action_noise: NotNegative = 0.0  # [u] std of what is added to an action when it arrives
     randomise: Ranges | None = None  # of each episode's body; also as {NAME: [low, high]}
     reward: Goal | None = None  # what it pays; None: the environment's own reward
     constraint: Constraint | None = None  # what decisions must not violate
 
     def __post_init__(self) -> None:
-        try:
-            for name, kind in OWN.items():
-                check(self, name, kind)
-        except FieldError as error:
-            raise error.at("episode") from error
-        for part, protocol in ((self.reward, Goal), (self.constraint, Constraint)):
-            if part is not None:
-                Contract(part, protocol, self.env.spec).check_examples()
-        object.__setattr__(self, "randomise", self._ranges(self.randomise))
-        if isinstance(self.sensor_noise, list):  # so that episodes can be hashed
-            object.__setattr__(self, "sensor_noise", self.std)
-        sizes = (1, self.env.spec.obs)
-        numbers = all(isinstance(x, Real) and not isinstance(x, bool) for x in self.std)
-        right = numbers and min(self.std, default=0) >= 0
-        if len(self.std) not in sizes or not right:
-            line = f"must be 1 or {sizes[1]} numbers, each 0 or more"
-            raise FieldError(self, "sensor_noise", line).at("episode")
-
-    def _ranges(self, given: Any) -> Ranges | None:
-        """Of the bodies, as they were given; None if all have the same."""
-        if given is None or isinstance(given, Ranges):
-            return given
-        names = [each.name for each in fields(Ranges)]
-        if not isinstance(given, Mapping) or not {*given} <= {*names}:
-            line = f"must be {{NAME: [low, high]}}, with names of {', '.join(names)}"
-            raise ValueError(f"episode.randomise={given}: {line}")
-        if all(pair is None for pair in given.values()):
-            return None
-        state = jax.eval_shape(self.env.reset, jax.random.key(0))
-        if not isinstance(state.data, PhysicsState):
-            line = "only for robots in MuJoCo, whose state.data Physics makes"
-            raise ValueError(f"episode.randomise: {line}")
-        try:
-            return Ranges(**given)
-        except FieldError as error:
-            raise error.at("episode.randomise") from error
+        for paid, protocol in ((self.reward, Goal), (self.constraint, Constraint)):
+            if paid is not None:
+                Contract(paid, protocol, self.env.spec).check_examples()
+        if len(self.std) not in (1, self.env.spec.obs):
+            line = f"must be one number, or {self.env.spec.obs} of them"
+            raise FieldError(self, "sensor_noise", line)
+        if isinstance(self.randomise, Mapping):
+            try:
+                object.__setattr__(self, "randomise", Ranges(**self.randomise))
+            except (FieldError, TypeError) as error:
+                line = f".{error.line}" if isinstance(error, FieldError) else f": {error}"
+                raise ValueError(f"episode.randomise{line}") from error
+        if self.randomise == Ranges():
+            object.__setattr__(self, "randomise", None)
+        first = jax.eval_shape(self.env.reset, jax.random.key(0)) if self.randomise else None
+        if first is not None and not isinstance(first.data, PhysicsState):
+            raise FieldError(self, "randomise", "only robots in MuJoCo have other bodies")
 
     @property
     def std(self) -> tuple[float, ...]:
@@ -104,8 +91,14 @@ class Episode:
 
     @property
     def world(self) -> Env:
-        """The environment with everything that is around it."""
-        return put_around(self.env, self)
+        """The environment with everything that is around it (see `wrappers`)."""
+        env = self.env if self.randomise is None else Randomised(self.env, self.randomise)
+        env = env if self.reward is None else Paid(env, self.reward)
+        env = Limited(Repeated(env, self.action_repeat), self.steps)
+        env = env if self.constraint is None else Constrained(env, self.constraint)
+        env = Disturbed(env, self.action_noise) if self.action_noise else env
+        env = Delayed(env, self.delay) if self.delay else env
+        return Sensed(env, self.std) if any(self.std) else env
 
     @property
     def spec(self) -> Spec:
@@ -139,16 +132,11 @@ class Episode:
 
     def check_demonstrations(self) -> None:
         """Raise ValueError if demonstrations would keep another reward than what this one pays."""
-        if (self.reward is None and self.constraint is None) or self.relabels:
-            return
-        what = "constraint takes" if self.reward is None else "reward pays"
-        line = f"what {what} for demonstrations is unknown"
-        if self.action_repeat > 1:
-            line = f"episode.action_repeat={self.action_repeat}: {line}, as they lack the steps"
-            line += " between decisions"
-        else:
-            line = f"constraint: {line}, as {type(self.env).__name__} has no reward_of"
-        raise ValueError(f"{line}; replay.demonstrations=null leaves them out of the memory")
+        if (self.reward is not None or self.constraint is not None) and not self.relabels:
+            raise ValueError(
+                "replay.demonstrations: what reward and constraint make of them is unknown with "
+                "episode.action_repeat above 1, or without reward_of of the world; give null"
+            )
 
     def reward_of(self, x: Array, u: Array, after: Array) -> Array:
         """The reward [], less a violation's price, of action u [m] between observations [o]."""

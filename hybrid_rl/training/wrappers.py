@@ -1,4 +1,4 @@
-"""What is put around an environment, each an environment itself; `Episode` puts them together.
+"""Wrappers of an environment, each an environment itself; `Episode` puts them together.
 
     Sensed(Delayed(Disturbed(Constrained(Limited(Repeated(Paid(Randomised(env))))))))
 
@@ -8,7 +8,6 @@ arrived and the observation without noise.
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -188,15 +187,3 @@ class Sensed(Around):
     def _seen(self, state: EnvState, key: Array) -> EnvState:
         obs, later = sensor_noise.added(state.obs, self.std, key)
         return state.replace(obs=obs, clock=state.clock._replace(true_obs=state.obs, sensing=later))
-
-
-def put_around(env: Env, episode: Any) -> Env:
-    """The environment with everything that an `episode` puts around it."""
-    e, std = episode, episode.std
-    env = env if e.randomise is None else Randomised(env, e.randomise)
-    env = env if e.reward is None else Paid(env, e.reward)
-    env = Limited(Repeated(env, e.action_repeat), e.steps)
-    env = env if e.constraint is None else Constrained(env, e.constraint)
-    env = Disturbed(env, e.action_noise) if e.action_noise else env
-    env = Delayed(env, e.delay) if e.delay else env
-    return Sensed(env, std) if any(std) else env

@@ -17,12 +17,12 @@ from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.data.replay import Replay
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.errors import UsageError
+from hybrid_rl.outside.loops import loop_of
 from hybrid_rl.run.retarget import retargeted
 from hybrid_rl.run.saved import load
 from hybrid_rl.run.start import _rewritten
 from hybrid_rl.settings import build as config
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.training.loops import loop_of
 from hybrid_rl.training.rollout import evaluate_episodes, rollout
 from hybrid_rl.types import Params
 

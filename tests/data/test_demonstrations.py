@@ -57,9 +57,9 @@ def test_saved_decisions_are_loaded(file: Path) -> None:
 @pytest.mark.parametrize(
     ("fields", "words"),
     [
-        ({"task": "cartpole"}, "is of task pendulum, not of cartpole"),
+        ({"task": "cartpole"}, "is of task pendulum; this run has task cartpole"),
         ({"episodes": 4}, "num_demonstrations=4: .* has 3"),
-        ({"episode": {"action_repeat": 4}}, "decides every 0.05 s, this pendulum 0.2 s"),
+        ({"episode": {"action_repeat": 4}}, "is of dt 0.05; this run has dt 0.2"),
         ({"file": "nowhere.npz"}, "nowhere.npz: no such file"),
     ],
 )
@@ -74,17 +74,20 @@ def put_in(array: np.ndarray, at: int, value: float) -> np.ndarray:
     return array
 
 
+EMPTY = {**dict.fromkeys((*COLUMNS, "episode"), ()), "obs": (3,), "action": (1,), "next_obs": (3,)}
+
+
 @pytest.mark.parametrize(
     ("arrays", "words"),
     [
-        ({"obs": np.zeros((N, 4))}, r"obs is \(12, 4\), not \(12, 3\)"),
-        ({"episode": EPISODE[:-1]}, r"episode is \(11,\), not \(12,\)"),
+        ({"obs": np.zeros((N, 4))}, r"obs is \(12, 4\); it must be \(12, 3\)"),
+        ({"episode": EPISODE[:-1]}, r"episode is \(11,\); it must be \(12,\)"),
         ({"episode": EPISODE[::-1]}, "episodes must follow one another"),
-        ({"obs": put_in(decisions().obs, 7, np.nan)}, "obs is not finite in row 7"),
-        ({"obs": put_in(decisions().obs, 2, 1e300)}, "obs is not finite in row 2"),
+        ({"obs": put_in(decisions().obs, 7, np.nan)}, r"obs is not finite at \[7, 0\]"),
+        ({"obs": put_in(decisions().obs, 2, 1e300)}, r"obs is not finite at \[2, 0\]"),
         ({"action": put_in(decisions().action, 5, 1.5)}, r"action must lie in \[-1, 1\]"),
         ({"truncated": put_in(np.zeros(N), 1, 1)}, "continues after its end, in row 1"),
-        ({name: np.zeros(0) for name in (*COLUMNS, "episode")}, "holds no decision"),
+        ({name: np.zeros((0, *shape)) for name, shape in EMPTY.items()}, "there is no decision"),
     ],
     ids=lambda given: "" if isinstance(given, dict) else given[:20],
 )

@@ -65,7 +65,7 @@ def test_a_started_policy_begins_with_the_parameters_of_the_file_and_acts_by_its
         np.testing.assert_array_equal(a, jnp.stack((b, b)))
     other, x = POLICY.init(KEY, Pendulum().spec), jnp.array([0.3, -0.2, 1.5])
     np.testing.assert_array_equal(started.mean(other, x), POLICY.mean(other, x))
-    with pytest.raises(ValueError, match="this policy's is"):
+    with pytest.raises(ValueError, match="it must be"):
         StartedGaussian((4, 4), "sin", normalise=True, **where)
 
 
@@ -80,11 +80,9 @@ def test_the_policy_is_the_one_that_the_file_describes(file: Path) -> None:
     trained, x = opened(file, policy=None), jnp.array([0.3, -0.2, 1.5])
     assert trained.policy == policy
     np.testing.assert_array_equal(trained.mean((), x), policy.mean(params, x))
-    bad = {"os.system": "is no part of", "hybrid_rl.envs.analytic.pendulum.Pendulum": "no policy"}
-    for target, words in bad.items():
-        save(file, "pendulum", Pendulum().spec, params, about | {"policy": {"_target_": target}})
-        with pytest.raises(ValueError, match=words):
-            opened(file, policy=None)
+    save(file, "pendulum", Pendulum().spec, params, about | {"policy": {"_target_": "os.system"}})
+    with pytest.raises(ValueError, match="is no part of"):
+        opened(file, policy=None)
     save(file, "pendulum", Pendulum().spec, params)
     with pytest.raises(ValueError, match="does not describe its policy; `python"):
         opened(file, policy=None)
@@ -93,12 +91,15 @@ def test_the_policy_is_the_one_that_the_file_describes(file: Path) -> None:
 @pytest.mark.parametrize(
     ("fields", "words"),
     [
-        ({"task": "cartpole"}, "is of task pendulum, not of cartpole"),
-        ({"world": PointMass()}, "obs has 3 numbers, this pendulum has 4"),
-        ({"episode": {"action_repeat": 4}}, "decides every 0.05 s, this pendulum 0.2 s"),
-        ({"policy": TanhGaussian((4, 4), "sin", normalise=True)}, r"bias is \(8,\), this .* \(4,"),
-        ({"policy": TanhGaussian((8, 4), "sin")}, r"has policy/state.*, which this policy lacks"),
-        ({"policy": TanhGaussian((8, 4, 2), "sin", normalise=True)}, "lacks policy/trunk/params/"),
+        ({"task": "cartpole"}, "is of task pendulum; this run has task cartpole"),
+        ({"world": PointMass()}, "is of obs 3; this run has obs 4"),
+        ({"episode": {"action_repeat": 4}}, "is of dt 0.05; this run has dt 0.2"),
+        ({"policy": TanhGaussian((4, 4), "sin", normalise=True)}, r"bias is \(8,\); .* \(4,"),
+        ({"policy": TanhGaussian((8, 4), "sin")}, r"policy/state.* is .*; it must be absent"),
+        (
+            {"policy": TanhGaussian((8, 4, 2), "sin", normalise=True)},
+            "params/.* is absent; it must",
+        ),
     ],
 )
 def test_a_file_for_another_use_is_refused(file: Path, fields: dict, words: str) -> None:

@@ -15,16 +15,16 @@ from tiny import call, only_line
 import hybrid_rl
 from hybrid_rl import evaluate, robot
 from hybrid_rl.cli import command
-from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.adapters.stand_in import ACTION, MOVED, RESET, Cartpole
 from hybrid_rl.envs.adapters.unstepped import ALONE
 from hybrid_rl.errors import UsageError, WorldError
+from hybrid_rl.outside.robot_process import RobotProcess
+from hybrid_rl.outside.row_log import RowLog
 from hybrid_rl.run.files.lock import lock
 from hybrid_rl.settings import build as config
 from hybrid_rl.tools.doctor.__main__ import CHECKS, examine
 from hybrid_rl.tools.stand_in import Physics
-from hybrid_rl.training.robot_process import RobotProcess
 from hybrid_rl.types import Spec
 
 pytestmark = pytest.mark.turns(3)
@@ -137,7 +137,7 @@ def test_a_resumed_run_learns_from_the_rows_that_wait(tmp_path, capfd, monkeypat
 
 def test_one_process_moves_a_robot(tmp_path, capfd, monkeypatch):
     """Another one is refused with its number, also after a learner has looked for it."""
-    monkeypatch.setattr(robot, "_real_time", lambda: None)
+    monkeypatch.setattr(robot, "_hurry", lambda: None)
     files = tmp_path / "robot"
     files.mkdir()
     with lock(files, "run"):
@@ -148,20 +148,10 @@ def test_one_process_moves_a_robot(tmp_path, capfd, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("missing", "line"),
-    [("reward", "lacks reward"), ("dt", "lacks dt"), ("low", "lacks low")],
-)
-def test_what_a_class_lacks_is_named(missing, line):
-    names = {name: getattr(Cartpole, name) for name in dir(Cartpole) if name[:2] != "__"}
-    del names[missing]
-    with pytest.raises(UsageError, match=line):
-        Robot(make=type("Lacking", (), names))
-
-
-@pytest.mark.parametrize(
     ("name", "value", "line"),
     [
-        ("dt", "fast", "dt=fast: must be one finite number"),
+        ("reward", None, "lacks reward"),
+        ("dt", None, "dt=None: must be one finite number"),
         ("dt", math.inf, "dt=inf: must be one finite number"),
         ("obs", 2.5, "obs a whole number"),
         ("low", [-math.inf], "low=.*: must be finite numbers"),
@@ -169,7 +159,7 @@ def test_what_a_class_lacks_is_named(missing, line):
         ("safe", [0.0, 0.0, 0.0], "safe must be one number, or as many as low"),
     ],
 )
-def test_numbers_of_a_class_that_no_robot_can_have_are_named(name, value, line):
+def test_what_no_robot_can_have_is_named(name, value, line):
     with pytest.raises(UsageError, match=line):
         Robot(make=type("Odd", (Cartpole,), {name: value}))
 

@@ -17,9 +17,9 @@ from jax import Array
 
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.adapters.unstepped import Unstepped
+from hybrid_rl.outside.host_loop import HostEvaluator
 from hybrid_rl.tools.doctor.evidence import Evidence
 from hybrid_rl.tools.doctor.limits import ERRORS
-from hybrid_rl.training.host_loop import HostEvaluator
 from hybrid_rl.training.rollout import evaluate_episodes
 from hybrid_rl.types import Params, Spec
 

@@ -2,17 +2,19 @@
 
     observe -> decide with the newest parameters -> limit -> apply -> append a row -> sleep
 
-Files in a folder connect it with the learner: `rows` (data.row_log) in one direction, `parameters`
-(data.handover) in the other, and `stop`, whose existence ends the motion. So either process can be
+Files in a folder connect it with the learner: `rows` (row_log) in one direction, `parameters`
+(handover) in the other, and `stop`, whose existence ends the motion. So either process can be
 killed and started again while the other one goes on.
 
 Times are those of one monotonic clock. Decision k begins at t0 + k dt; after a missed deadline the
-periods that are over are left out, and the rows before and after belong to two stretches.
+periods that are over are left out. A decision without an outcome is not recorded, and what follows
+is another stretch.
 """
 
 import gc
 import math
 import os
+import reprlib
 import threading
 import time
 from collections.abc import Callable
@@ -21,21 +23,21 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import jax
 import numpy as np
 
-from hybrid_rl.data import handover
-from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.envs.adapters.robot import Robot
-from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame, one_line
+from hybrid_rl.errors import FAULTS, WorldError, blame, one_line
+from hybrid_rl.outside import handover
+from hybrid_rl.outside.acting import Exploring
+from hybrid_rl.outside.robot_process import WAITING, report
+from hybrid_rl.outside.row_log import RowLog, row_type
 from hybrid_rl.training.agent import Agent
-from hybrid_rl.training.decider import Decider
-from hybrid_rl.training.robot_process import WAITING, report
 from hybrid_rl.types import Params
 
 RESET_S = 120.0  # [s] that a robot's `reset` may take
 RETRY_S = 1.0  # [s] between attempts to reach a robot that does not answer
 LOST = 3  # exit code: the robot does not answer
+OBSERVED = "must return (observation [{}], its time.monotonic()); it returned {}"
 
 
 @dataclass
@@ -70,8 +72,12 @@ class Actor:
         """Compile; the robot is made by `run`."""
         env = self.agent.episode.env
         assert isinstance(env, Robot)
-        self.env, self.spec = env, env.spec
-        self._decide = Decider(self.agent, self.seed, self.recording)
+        self.env, self.spec, self._kind = env, env.spec, row_type(env.spec)
+        self._decide = Exploring(
+            self.agent, self.seed, self.agent.random_steps if self.recording else 0
+        )
+        if self.params is not None:
+            self._decide.take(self.params)
         self._version, self._beat, self._allowed = 0, time.monotonic(), math.inf
         self._made, self._ended = time.time(), False
         self._since = math.inf  # when the robot fell silent, if it has begun no episode since
@@ -86,16 +92,17 @@ class Actor:
         self.robot = self.env.made()
         self.log = RowLog(self.folder / "rows", self.spec) if self.recording else None
         last = self.log.recover() if self.log else None
-        self._number = int(last["number"]) + 1 if last is not None else 0
-        self._stretch = int(last["stretch"]) + 1 if last is not None else 0
-        self._episode = int(last["episode"]) if last is not None else 0
+        self._number = self._stretch = self._episode = 0
+        if last is not None:
+            self._number = int(last["number"]) + 1
+            self._stretch, self._episode = int(last["stretch"]), int(last["episode"])
         for thread in (self._watch, self._receive):
             threading.Thread(target=thread, daemon=True).start()
         end = time.monotonic() + seconds
         gc.freeze()
         gc.disable()
         try:
-            while not self._over() and self.params is None:
+            while not self._over() and self._decide.params is None:
                 time.sleep(0.01)
             while not self._over() and time.monotonic() < end:
                 self._drive(end)
@@ -124,55 +131,60 @@ class Actor:
         self._since = math.inf
         self._episode, self._stretch = self._episode + 1, self._stretch + 1
         self._decide.begin()
-        pending, taken, self._return = None, 0, 0.0
+        row, taken, self._return = None, 0, 0.0  # of the decision before
         began, k, heard = time.monotonic(), 0, time.monotonic()
         past = [self.env.safe] * max(self.env.past_actions, 1)  # the newest first
         while not self._over() and (begin := began + k * self.spec.dt) < end:
             _sleep_until(begin)
             obs, stamp = self._observed(past)
-            if obs is None:
-                if time.monotonic() - heard > self.env.silence_s:
-                    return self._silent(f"no observation for {self.env.silence_s:g} s")
-                past, pending = [self._safe(), *past[:-1]], self._left_out(pending)
-                k += 1
-                continue
-            heard = time.monotonic()
-            if pending is not None:
-                taken += 1
-                if self._record(pending, obs, taken):
+            if obs is not None:
+                heard, taken = time.monotonic(), taken + (row is not None)
+                if row is not None and self._record(row, obs, taken):
                     return None
-            action = self._limited(self._decide(self.params, obs, self._number), past[0])
-            if not np.isfinite(action).all():
-                past, pending = [self._safe(), *past[:-1]], self._left_out(pending)
-                k += 1
-                continue
-            self._apply(action)
-            now, past = time.monotonic(), [action, *past[:-1]]
-            pending = obs, action, now - begin, now - stamp, self._version
-            k += 1
-            if now - begin > self.spec.dt:
-                self.counts.missed += 1
-                pending, k = self._left_out(pending), math.ceil((now - began) / self.spec.dt)
+            elif time.monotonic() - heard > self.env.silence_s:
+                return self._silent(f"no observation for {self.env.silence_s:g} s")
+            row = None if obs is None else self._acted(obs, stamp, past[0], begin)
+            past = [self._safe() if row is None else row["action"], *past[:-1]]
+            if (late := time.monotonic() - begin) > self.spec.dt:
+                row, self.counts.missed = None, self.counts.missed + 1
+            self._stretch += row is None
+            k += max(1, math.ceil(late / self.spec.dt))
         return None
 
-    def _record(self, pending: tuple, obs: np.ndarray, taken: int) -> bool:
-        """Append the decision before `obs`; whether it ended the episode."""
-        before, action, late, age, version = pending
-        self.counts.decisions += 1
-        physical = self._physical(action)
+    def _acted(
+        self, obs: np.ndarray, stamp: float, before: np.ndarray, begin: float
+    ) -> np.ndarray | None:
+        """The row of a decision at `obs` that was applied; None if it is not finite.
+
+        stamp: of the observation; before: the last action; begin: of the period.
+        """
+        u, rate = self._decide(obs, self._number), self.env.rate or 2.0
+        action = np.clip(np.clip(u, before - rate, before + rate), -1, 1)
+        if not np.isfinite(action).all():
+            return None
+        self._apply(action)
+        now, row = time.monotonic(), np.zeros((), self._kind)
+        row["obs"], row["action"], row["version"] = obs, action, self._version
+        row["late"], row["age"], row["time"] = now - begin, now - stamp, time.time()
+        return row
+
+    def _record(self, row: np.ndarray, obs: np.ndarray, taken: int) -> bool:
+        """Append the row of the decision that led to `obs`; whether it ended the episode."""
         size = self.env.kind.obs
-        seen, after = before[:size], obs[:size]
+        seen, physical, after = row["obs"][:size], self._physical(row["action"]), obs[:size]
         reward = self._call("reward", lambda: float(self.robot.reward(seen, physical, after)))
         if not math.isfinite(reward):
             raise WorldError(f"{self.env.name}: reward: gives {reward}")
         failed = getattr(self.robot, "terminated", lambda obs: False)
         terminated = self._call("terminated", lambda: bool(failed(after)))
         truncated = not terminated and taken >= self.agent.episode.steps
+        row["number"], row["stretch"] = self._number, self._stretch
+        row["episode"], row["next_obs"], row["reward"] = self._episode, obs, reward
+        row["terminated"], row["truncated"] = terminated, truncated
+        row["missed"], row["unsafe"] = self.counts.missed, self.counts.unsafe
         if self.log is not None:
-            values = (self._number, self._stretch, self._episode, time.time(), before, action)
-            values += (reward, terminated, truncated, obs, late, age, version)
-            row = np.array((*values, self.counts.missed, self.counts.unsafe, 0), self.log.kind)
             self.log.append(row)
+        self.counts.decisions += 1
         self._number, self._return = self._number + 1, self._return + reward
         if terminated or truncated:
             self.counts.returns.append(self._return)
@@ -180,28 +192,23 @@ class Actor:
 
     def _observed(self, past: list[np.ndarray]) -> tuple[np.ndarray | None, float]:
         """(observation [o] with past actions, its time); None if there is none to act on."""
-        try:
+        size, most = self.env.kind.obs, self.env.stale * self.spec.dt
+        given = None
+        with suppress(OSError):  # a robot that does not answer
             given = self._call("observe", self.robot.observe)
-        except OSError:  # a robot that does not answer
-            self.counts.stale += 1
-            return None, 0.0
-        try:
-            seen, stamp = given
-            obs, stamp = np.array(seen, np.float32), float(stamp)
-        except (TypeError, ValueError) as error:
-            line = "must return (observation, its time.monotonic()), all numbers"
-            raise WorldError(f"{self.env.name}: observe: {line}") from error
-        if obs.shape != (self.env.kind.obs,):
-            line = f"gives {list(obs.shape)}, and the class says obs = {self.env.kind.obs}"
-            raise WorldError(f"{self.env.name}: observe: {line}")
-        age, most = time.monotonic() - stamp, self.env.stale * self.spec.dt
-        if age < -most:
-            line = f"its time is {-age:.3g} s ahead of time.monotonic(), whose it must be"
-            raise WorldError(f"{self.env.name}: observe: {line}")
-        if not (age <= most and np.isfinite(obs).all()):  # a time that is NaN is no time
-            self.counts.stale += 1
-            return None, 0.0
-        return np.concatenate([obs, *past[: self.env.past_actions]]), stamp
+            try:
+                obs, stamp = np.array(given[0], np.float32), float(given[1])
+                age = time.monotonic() - stamp
+                wrong = obs.shape != (size,) or age < -most
+            except (TypeError, ValueError, LookupError):
+                wrong = True
+            if wrong:
+                line = OBSERVED.format(size, reprlib.repr(given))
+                raise WorldError(f"{self.env.name}: observe: {line}")
+            if age <= most and np.isfinite(obs).all():  # a time that is NaN is no time
+                return np.concatenate([obs, *past[: self.env.past_actions]]), stamp
+        self.counts.stale += 1
+        return None, 0.0
 
     def _apply(self, action: np.ndarray) -> None:
         with suppress(OSError):  # a lost connection: there will be no observation, either
@@ -214,11 +221,7 @@ class Actor:
         return self.env.safe
 
     def _silent(self, why: str) -> None:
-        """End motion, and wait until the robot answers again; the learner shows why.
-
-        Raises:
-            TimeoutError: if it has begun no episode for `alone_s`.
-        """
+        """End motion, and wait for `alone_s` until the robot answers; the learner shows why."""
         self.robot.stop()
         line = f"{self.env.name}: {why}"
         report(self.folder, line + WAITING)
@@ -231,16 +234,6 @@ class Actor:
             self._beat = time.monotonic()
             time.sleep(RETRY_S)
         (self.folder / "error").unlink(missing_ok=True)
-
-    def _left_out(self, pending: tuple | None) -> None:
-        """None, in place of a decision without an outcome; a new stretch begins after it."""
-        self._stretch += pending is not None
-
-    def _limited(self, u: np.ndarray, previous: np.ndarray) -> np.ndarray:
-        """The action within the bounds, and within `rate` of the one before."""
-        if self.env.rate is not None:
-            u = np.clip(u, previous - self.env.rate, previous + self.env.rate)
-        return np.clip(u, -1, 1).astype(np.float32)
 
     def _physical(self, action: np.ndarray) -> np.ndarray:
         low, high = self.env.bounds
@@ -281,8 +274,8 @@ class Actor:
             except OSError:
                 now = None
             if now != known and (found := handover.latest(file, self._decide.like)) is not None:
-                known = now
-                self._version, self.params = found[0], jax.device_put(found[1])
+                known, self._version = now, found[0]
+                self._decide.take(found[1])
             time.sleep(self.env.handover_s / 2)
 
 
@@ -290,12 +283,3 @@ def _sleep_until(moment: float) -> None:
     """Sleep until a time of the monotonic clock; the last half millisecond is spent awake."""
     while (left := moment - time.monotonic()) > 0:
         time.sleep(max(left - 5e-4, 0))
-
-
-def check_one(agent: Agent, seeds: tuple[int, ...]) -> None:
-    """Raise UsageError unless there is one learner, with one environment."""
-    if len(seeds) > 1 or agent.num_envs > 1:
-        raise UsageError(
-            f"num_seeds={len(seeds)}, num_envs={agent.num_envs}: one robot has one learner; "
-            "give 1 and 1"
-        )

@@ -15,12 +15,12 @@ from test_host_loop import ROUNDS, STEPS, agents
 
 from hybrid_rl.errors import WorldError
 from hybrid_rl.learners.return_scale import ReturnScale
+from hybrid_rl.outside import sending
+from hybrid_rl.outside.loops import loop_of
+from hybrid_rl.outside.sending import mailbox, send
 from hybrid_rl.settings import build as config
-from hybrid_rl.training import sending
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import REPLICATED, SEEDS
-from hybrid_rl.training.loops import loop_of
-from hybrid_rl.training.sending import mailbox, send
 
 pytestmark = pytest.mark.turns(3)
 

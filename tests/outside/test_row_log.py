@@ -7,7 +7,7 @@ import resource
 import numpy as np
 import pytest
 
-from hybrid_rl.data.row_log import RowLog
+from hybrid_rl.outside.row_log import RowLog
 from hybrid_rl.types import Spec
 
 SPEC = Spec(obs=3, act=1, dt=0.1)

@@ -16,7 +16,6 @@ in every `observe`, as in training.
 
 import threading
 import time
-from collections import deque
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -28,6 +27,9 @@ from omegaconf import DictConfig
 
 from hybrid_rl.envs.adapters.robot import Outside
 from hybrid_rl.errors import DivergenceError, UsageError
+from hybrid_rl.outside.acting import Exploring, numbers
+from hybrid_rl.outside.learner import RowLearner, RowLoop
+from hybrid_rl.outside.row_log import row_type
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.checkpoints.store import Record, Store
@@ -38,16 +40,11 @@ from hybrid_rl.run.logs.rows import Gathered
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings.values import check
-from hybrid_rl.training.decider import Decider
-from hybrid_rl.training.given import numbers
-from hybrid_rl.training.robot_loop import RobotLoop, packed
-from hybrid_rl.types import Params
 
 MODES = ("background", "between_episodes", "inline")
 HANDOVER_S = 0.1  # [s] between two sets of parameters that `act` gets from the thread
 OUTSIDE = f"{Outside.__module__}.{Outside.__name__}"
-ELSEWHERE = {"task": "obs=, act= and dt= describe the world", "run_dir": "save(FOLDER) writes one"}
-ELSEWHERE["resume"] = "OnlineLearner.load(FOLDER) goes on"
+ELSEWHERE = ("task", "run_dir", "resume")  # keys of `train` alone
 
 
 class OnlineLearner:
@@ -87,21 +84,22 @@ class OnlineLearner:
         prepare(self.config)
         run = configuration.built(self.config)
         fits([run])
-        self._loop = RobotLoop(run.agent, run.seeds, 1)
         self._mode, self._lock, self._spec = learn, threading.Lock(), run.agent.spec
-        self._state = self._loop.init()
-        self._observe, self._learn = self._loop.halves(self._state)
-        self._rows: Any = self._loop.empty()
-        self._decide = Decider(run.agent, run.seeds[0], at_random=True)
-        self._waiting: deque[tuple[Any, ...]] = deque()
-        self._pending: tuple[np.ndarray, np.ndarray] | None = None
+        self._loop = RowLoop(run.agent, run.seeds, 1)
+        self._decide = Exploring(run.agent, run.seeds[0], run.agent.random_steps)
+        self._kind, self._rows = row_type(self._spec), {}  # number -> row
+        self._learner = RowLearner(self._loop, self._loop.init(), self._rows.get)
         self._start(0)
 
     def _start(self, decisions: int) -> None:
         """Begin to learn after so many decisions, in a new episode."""
-        self.decisions = self._seen = self._learned = self._began = decisions
-        self._first, self._handed, self._error, self._closed = True, 0.0, None, False
-        self._params = self._newest()
+        self.decisions = self._began = decisions
+        self._learner.read = self._learner.learned = decisions
+        self._pending: tuple[np.ndarray, np.ndarray] | None = None
+        self._stretch = self._episode = 0
+        self._error: Exception | None = None
+        self._handed, self._closed = 0.0, False
+        self._decide.take(self._newest())
         if self._mode == "background":
             self._thread = threading.Thread(target=self._follow, daemon=True)
             self._thread.start()
@@ -109,13 +107,13 @@ class OnlineLearner:
     @property
     def updates(self) -> int:
         """Decisions that were learned from since it was made or loaded."""
-        return self._learned - self._began
+        return self._learner.learned - self._began
 
     @property
     def metrics(self) -> dict[str, float]:
         """The newest metrics of the learners, such as sac/critic_loss."""
         with self._lock:
-            rows = {name: np.asarray(value) for name, value in self._rows.items()}
+            rows = {name: np.asarray(value) for name, value in self._learner.metrics.items()}
         known = {name: float(value.ravel()[0]) for name, value in rows.items() if "/" in name}
         return {name: value for name, value in known.items() if np.isfinite(value)}
 
@@ -131,7 +129,7 @@ class OnlineLearner:
         if self._pending is not None:
             raise UsageError("act: the last action has no outcome yet; observe or interrupt first")
         obs = numbers("obs", obs, self._spec.obs)
-        action = self._decide(self._params, obs, self.decisions)
+        action = self._decide(obs, self.decisions)
         if not np.isfinite(action).all():
             line = f"act: after {self.decisions} decisions the learner reached NaN or infinity"
             raise DivergenceError(f"{line}; OnlineLearner.load goes on from what was saved before")
@@ -161,26 +159,29 @@ class OnlineLearner:
         self._check()
         if self._pending is None:
             raise UsageError("observe: there is no action yet; call act first")
-        after = numbers("next_obs", next_obs, self._spec.obs)
-        paid = numbers("reward", reward)
-        ended = bool(numbers("terminated", terminated))
-        cut = bool(numbers("truncated", truncated)) and not ended
-        obs, action = self._pending
+        row = np.zeros((), self._kind)
+        row["obs"], row["action"] = self._pending
+        row["next_obs"] = numbers("next_obs", next_obs, self._spec.obs)
+        row["reward"] = numbers("reward", reward)
+        row["terminated"], row["truncated"] = bool(terminated), bool(truncated and not terminated)
         if executed is not None:
-            action = numbers("executed", executed, self._spec.act, most=1)
-        self._pending = None
-        self._waiting.append((action, after, paid, ended, cut, obs, self._first))
-        self.decisions, self._first = self.decisions + 1, ended or cut
-        if self._first:
-            self._decide.begin()
-        if self._mode == "inline" or (self._mode == "between_episodes" and self._first):
+            row["action"] = numbers("executed", executed, self._spec.act, most=1)
+        row["number"], row["stretch"] = self.decisions, self._stretch
+        row["episode"], row["time"] = self._episode, time.time()
+        self._rows[self.decisions], self._pending = row, None
+        self.decisions += 1
+        ended = bool(terminated or truncated)
+        if ended:
+            self.interrupt()
+        if self._mode == "inline" or (self._mode == "between_episodes" and ended):
             while self._advance():
                 pass
-            self._params = self._newest()
+            self._decide.take(self._newest())
 
     def interrupt(self) -> None:
         """The episode was broken off without an outcome: the last action is forgotten."""
-        self._pending, self._first = None, True
+        self._pending = None
+        self._stretch, self._episode = self._stretch + 1, self._episode + 1
         self._decide.begin()
 
     def _follow(self) -> None:
@@ -190,34 +191,27 @@ class OnlineLearner:
                 if not self._advance():
                     time.sleep(1e-3)
                 if time.monotonic() - self._handed > HANDOVER_S:
-                    self._params, self._handed = self._newest(), time.monotonic()
+                    self._decide.take(self._newest())
+                    self._handed = time.monotonic()
         except Exception as error:  # the caller's thread raises it
             self._error = error
 
     def _advance(self) -> bool:
-        """Take one decision into the memory, or else learn once; False if nothing is left."""
+        """Take a row into the memory, or else learn from one; False if nothing is left."""
+        learner = self._learner
         with self._lock, jax.debug_nans(False):  # in rows NaN is what does not apply
-            if self._seen < self.decisions:
-                *row, first = self._waiting[self._seen - self._learned]
-                gap = np.bool_(first and self._seen > 0)
-                memory = self._observe(self._state.memory, *packed(*row), gap)
-                self._state = self._state.replace(memory=memory)
-                self._seen += 1
-            elif self._learned < self._seen:
-                *row, first = self._waiting.popleft()
-                made = *packed(*row), np.bool_(first), np.int32(self._learned)
-                self._state, self._rows = self._learn(self._state, self._rows, np.int32(0), *made)
-                jax.block_until_ready(self._state.key)
-                self._learned += 1
-            else:
+            if not (learner.in_order and learner.owes) and learner.observe():
+                return True
+            if not learner.owes:
                 return False
+            learner.learn()
+            self._rows.pop(learner.learned - 2, None)  # the newest says where an episode begins
             return True
 
-    def _newest(self) -> Params:
+    def _newest(self) -> Any:
         """A copy of the newest parameters."""
         with self._lock:
-            params = jax.vmap(self._loop.agent.params)(self._state)
-            return jax.device_put(jax.tree.map(lambda leaf: np.array(leaf)[0], params))
+            return self._learner.params()
 
     def save(self, folder: Path | str) -> None:
         """Write a run folder, or replace one of `save`, after what waits has entered the memory.
@@ -226,12 +220,13 @@ class OnlineLearner:
             UsageError: if it cannot be written to, or holds another kind of run.
             CheckpointError: if the checkpoint could not be written.
         """
-        while self._seen < self.decisions:
+        learner = self._learner
+        while learner.read < self.decisions:
             self._advance()
         with _writable(folder) as path, self._lock:
             store = Store(path / "checkpoints", self._loop, True, written(self.config))
             store.known = set(checkpoint.steps(store.folder))
-            store.save(self._state, Gathered(), Record([[]], [None], step=self._seen))
+            store.save(learner.state, Gathered(), Record([[]], [None], step=learner.read))
             run_folder.write(path, self.config)
 
     @classmethod
@@ -245,11 +240,11 @@ class OnlineLearner:
         config = run_folder.read(Path(folder), "folder")
         if config.env.get("_target_") != OUTSIDE:
             raise UsageError(f"folder={folder}: was not written by OnlineLearner.save")
+        refuse_edits(config, Path(folder))
         learner = cls(config, learn=learn)
         learner.close()
-        refuse_edits(config, Path(folder))
         store = Store(Path(folder) / "checkpoints", learner._loop, True, {})
-        learner._state, _, record, _ = store.restore()
+        learner._learner.state, _, record, _ = store.restore()
         learner._start(record.step)
         return learner
 
@@ -277,8 +272,6 @@ class OnlineLearner:
 @contextmanager
 def _writable(folder: Path | str) -> Iterator[Path]:
     """The folder, locked, unless it holds a run that `OnlineLearner.save` has not written."""
-    if not str(folder):
-        raise UsageError("folder=: give the folder that save writes")
     with lock(Path(folder), "folder") as path:
         if (path / "config.yaml").exists():
             env = run_folder.parse_config(path, "folder").get("env")
@@ -291,10 +284,8 @@ def _config(method: Any, sizes: dict[str, Any], seed: int, config_dir: Any) -> D
     """The configuration of a method in a world of these sizes; that of `load` stays as it is."""
     if isinstance(method, DictConfig):
         return method
-    if isinstance(method, str):
-        raise UsageError(f'OnlineLearner("{method}"): give a list, OnlineLearner(["{method}"])')
-    for key in (each.partition("=")[0].lstrip("+") for each in [*method] if "=" in each):
-        if key in ELSEWHERE:
-            raise UsageError(f"OnlineLearner: {key}=: {ELSEWHERE[key]}")
+    method = [method] if isinstance(method, str) else [*method]
+    if wrong := [key for key in ELSEWHERE if any(word.startswith(f"{key}=") for word in method)]:
+        raise UsageError(f"{wrong[0]}=: is of train; OnlineLearner has obs=, act=, save and load")
     given = [f"env.{name}={value}" for name, value in sizes.items()]
     return configuration.load(["task=online", *given, f"seed={seed}", *method], config_dir)

@@ -1,4 +1,4 @@
-"""Decisions of a robot in a file: one process appends them, another reads them.
+"""Rows, one for each decision, and their file: one process appends them, another reads them.
 
 A row is written whole by one call, and has its number and a checksum. What is in the file outlives
 both processes, so nothing has to be sent again or acknowledged: a learner goes on reading behind
@@ -16,7 +16,10 @@ from hybrid_rl.types import Spec
 
 
 def row_type(spec: Spec) -> np.dtype:
-    """The fields of a row."""
+    """The fields of a row, of which `outside.learner.transition` makes a transition.
+
+    A robot's process writes all of them (`outside.actor`), a loop of the user's only one time.
+    """
     return np.dtype(
         [
             ("number", "<i8"),  # from 0
@@ -60,28 +63,32 @@ class RowLog:
         return self.read(count - 1) if count else None
 
     def append(self, row: np.ndarray) -> None:
-        """Write a row [] of `kind`, with its checksum.
-
-        Raises:
-            OSError: if the disk is full; `recover` cuts off what was written of it.
-        """
-        row["check"] = _check(row)
-        data = row.tobytes()
+        """Write a row [] of `kind`; `recover` cuts off what a full disk left of it."""
+        data = sealed(row)
         while data:
             data = data[os.write(self._file, data) :]
 
     def read(self, number: int) -> np.ndarray | None:
         """Row `number` []; None if it is not there, or not whole."""
-        data = os.pread(self._file, self.kind.itemsize, number * self.kind.itemsize)
-        if len(data) < self.kind.itemsize:
+        if number < 0:
             return None
-        row = np.frombuffer(data, self.kind)[0]
-        return row if row["number"] == number and row["check"] == _check(row) else None
+        data = os.pread(self._file, self.kind.itemsize, number * self.kind.itemsize)
+        row = opened(data, self.kind)
+        return row if row is not None and row["number"] == number else None
 
     def close(self) -> None:
         """Close the file."""
         os.close(self._file)
 
 
-def _check(row: np.ndarray) -> int:
-    return zlib.crc32(row.tobytes()[:-4])
+def sealed(row: np.ndarray) -> bytes:
+    """The bytes of a row [], which gets the checksum of the others as its last field."""
+    row["check"] = zlib.crc32(row.tobytes()[:-4])
+    return row.tobytes()
+
+
+def opened(data: bytes, kind: np.dtype) -> np.ndarray | None:
+    """The row [] in these bytes; None if they are not whole."""
+    if len(data) != kind.itemsize or int.from_bytes(data[-4:], "little") != zlib.crc32(data[:-4]):
+        return None
+    return np.frombuffer(data, kind)[0]

@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 from counting import LINE, Counting, broken, lost, moved, of
 
-from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.errors import WorldError
+from hybrid_rl.outside import actor as actors
+from hybrid_rl.outside.actor import Actor
+from hybrid_rl.outside.robot_process import RobotProcess
+from hybrid_rl.outside.row_log import RowLog
 from hybrid_rl.settings import build as config
-from hybrid_rl.training import actor as actors
-from hybrid_rl.training.actor import Actor
-from hybrid_rl.training.robot_process import RobotProcess
 
 
 @pytest.fixture(scope="module")
@@ -172,9 +172,9 @@ def test_a_robot_whose_reset_fails_is_tried_again_and_given_up(agent, tmp_path, 
 @pytest.mark.parametrize(
     ("method", "line"),
     [
-        ("clock", r"observe: its time is 1.+ s ahead of time\.monotonic\(\), whose it must be"),
-        ("observe", r"observe: gives \[3\], and the class says obs = 4"),
-        ("untimed", r"observe: must return \(observation, its time\.monotonic\(\)\)"),
+        ("clock", r"observe: must return .* its time\.monotonic\(\)\); it returned .*, 1"),
+        ("observe", r"observe: must return \(observation \[4\], .*\); it returned \(array"),
+        ("untimed", r"observe: must return .*, None\)"),
         ("reward", r"reward: gives nan"),
         ("apply", r"apply: .*test_actor.py:\d+: ZeroDivisionError"),
     ],

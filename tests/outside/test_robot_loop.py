@@ -10,10 +10,11 @@ import pytest
 from counting import LINE, Counting, broken, lost, moved, of
 
 from hybrid_rl.errors import UsageError
+from hybrid_rl.files.atomic import own_folder
+from hybrid_rl.outside.loops import loop_of
+from hybrid_rl.outside.robot_loop import RobotProgram
+from hybrid_rl.outside.robot_process import RobotProcess
 from hybrid_rl.settings import build as config
-from hybrid_rl.training.loops import loop_of
-from hybrid_rl.training.robot_loop import RobotProgram
-from hybrid_rl.training.robot_process import RobotProcess
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +26,7 @@ def agent():
 def test_the_learner_learns_from_the_rows(agent, tmp_path, monkeypatch):
     """Its memory is what the file holds; a gap ends the row before; a call may end early."""
     loop = loop_of(of(agent, broken(lost)), (0,), 20, tmp_path)
-    _, rows = moved(agent, tmp_path / "robot", broken(lost))
+    _, rows = moved(agent, own_folder(loop.folder), broken(lost))
     monkeypatch.setattr(RobotProcess, "watch", lambda self: None)
     state = loop.init()
     program = loop.compile(state)
@@ -51,9 +52,10 @@ def test_the_learner_learns_from_the_rows(agent, tmp_path, monkeypatch):
 def test_reading_and_learning_share_the_time_of_a_slow_learner(agent, tmp_path, monkeypatch):
     """Each decision has its updates, also after an interruption, though rows always wait."""
     loop = loop_of(of(agent, Counting), (0,), 20, tmp_path)
-    _, rows = moved(agent, tmp_path / "robot", Counting)
+    _, rows = moved(agent, own_folder(loop.folder), Counting)
     monkeypatch.setattr(RobotProcess, "watch", lambda self: None)
     observe, learn = loop.halves(loop.init())
+    monkeypatch.setattr(loop, "halves", lambda state: [observe, slowly])
     learned, state = [], loop.init()
 
     def slowly(*given):
@@ -61,9 +63,10 @@ def test_reading_and_learning_share_the_time_of_a_slow_learner(agent, tmp_path, 
         learned.append(int(given[-1]))
         return learn(*given)
 
+    slowly.memory_analysis = learn.memory_analysis
+
     for start in (0, 12):
-        program = RobotProgram(loop, observe, learn)
-        monkeypatch.setattr(program, "learn", slowly)
+        program = RobotProgram(loop, state)
         state, metrics = program(state, jnp.int32(start), jnp.int32(12))
         assert learned == list(range(start + 12))
         rewards = [row["reward"] for row in rows[start : start + 12]]

@@ -7,9 +7,9 @@ from typing import ClassVar
 import jax
 import numpy as np
 
-from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.envs.adapters.robot import Robot
-from hybrid_rl.training.actor import Actor
+from hybrid_rl.outside.actor import Actor
+from hybrid_rl.outside.row_log import RowLog
 
 LINE = ["task=robot", "env.make=hybrid_rl.envs.adapters.stand_in:Cartpole", "algo=sac"]
 LINE += ["policy.hidden=[8]", "critic.hidden=[8]", "policy_learner.batch_size=4", "total_steps=200"]

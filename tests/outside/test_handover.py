@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hybrid_rl.data import handover
+from hybrid_rl.outside import handover
 
 TREE = {"a": np.arange(6, dtype=np.float32).reshape(2, 3), "b": np.int32(4)}
 

@@ -21,7 +21,7 @@ from jax.experimental import io_callback
 
 from hybrid_rl.envs.mujoco import xla_callback
 
-TARGET = "hybrid_rl.training.sending"
+TARGET = "hybrid_rl.outside.sending"
 POLL_S = 1.0  # [s] after which it is asked whether the program failed before it sent
 _boxes: dict[int, SimpleQueue] = {}  # of open mailboxes, by ticket
 _tickets = count()
@@ -56,9 +56,7 @@ class Mailbox:
     def next(self, result: Any) -> np.ndarray:
         """The actions [S * E, m] of the next program, whose result is `result`.
 
-        Raises:
-            Exception: what the program raised before it sent.
-            RuntimeError: if it ended without sending.
+        Raises what the program raised before it sent.
         """
         parts: list[np.ndarray] = []
         while len(parts) < self.parts:

@@ -17,7 +17,6 @@ the end of a call.
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from time import perf_counter
-from types import MappingProxyType
 from typing import Any
 
 import jax
@@ -25,19 +24,18 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.core.batching import repeat, where
+from hybrid_rl.core.batching import where
 from hybrid_rl.envs.adapters.copies import Copies, Outcome
 from hybrid_rl.envs.adapters.external import External
+from hybrid_rl.outside.acting import NONE, Acting
+from hybrid_rl.outside.sending import mailbox, send
 from hybrid_rl.protocols import Controller
 from hybrid_rl.training.agent import AgentState
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Loop, put
 from hybrid_rl.training.metrics import outcome
-from hybrid_rl.training.rollout import act
-from hybrid_rl.training.sending import mailbox, send
 from hybrid_rl.types import Clock, EnvState, Params, PyTree
 
-NONE: Mapping[str, Array] = MappingProxyType({})
 RESUMED = "the environment begins a new episode, as its own state is in no checkpoint: the "
 RESUMED += "decisions after this one differ from those of a run without the interruption"
 
@@ -158,11 +156,7 @@ class HostProgram:
         self.copies: Copies | None = None  # made at the first call
 
     def __call__(self, state: AgentState, start: Array, rounds: Array) -> tuple[AgentState, Any]:
-        """As the program of `Loop`.
-
-        Raises:
-            WorldError: if an environment raises an error, gives NaN, or takes too long.
-        """
+        """As the program of `Loop`."""
         loop, envs, first, made = self.loop, self.loop.agent.num_envs, int(start), False
         each = len(loop.seeds), envs
         if self.copies is None:
@@ -192,7 +186,7 @@ class HostEvaluator:
     """Episodes of every learner under `controller`, on environments that are not those of training.
 
     It compiles when it is made. params: [S, ...]; keys: [S, N], one per episode, which seed them;
-    numbers: of a loop's axis by path [S]; of: maps one learner's numbers to its controller.
+    numbers, of: as of `Acting`.
     """
 
     def __init__(
@@ -205,49 +199,32 @@ class HostEvaluator:
         of: Callable[[Any], Controller] | None = None,
     ) -> None:
         """Compile one decision in all of them."""
-        self.episode, (learners, count), self.numbers = episode, keys.shape, dict(numbers)
-        empty = episode.reset(jax.random.key(0))
-
-        def acting(numbers: Any) -> Controller:
-            return controller if of is None else of(numbers)
-
-        def begun(numbers: Any) -> Any:
-            return repeat(acting(numbers).init(episode.spec), count)
-
-        def decide(numbers: Any, params: Params, control: Any, obs: Array, keys: Array) -> tuple:
-            env = repeat(empty, len(obs))
-            keys, now = jnp.moveaxis(jax.vmap(jax.random.split)(keys), 1, 0)
-            u, control, _ = act(acting(numbers), params, control, env.replace(obs=obs), now)
-            return u, control, keys
-
-        self.control = jax.vmap(begun, axis_size=learners)(self.numbers)
-        obs = np.zeros((*keys.shape, episode.spec.obs), np.float32)
-        program = jax.jit(jax.vmap(decide), donate_argnums=2)
-        self._decide = program.lower(self.numbers, params, self.control, obs, keys).compile()
+        self.episode = episode
+        self._acting = Acting(episode.spec, controller, keys, numbers, of)
+        self._acting.compile(params)
 
     def __call__(
         self, params: Params, keys: Array, cut: Callable[[], bool] = lambda: False
     ) -> dict[str, np.ndarray] | None:
         """The `return` [S, N] of each episode, and `success` if infos say; None once `cut`."""
-        shape, control = keys.shape, jax.tree.map(jnp.copy, self.control)
         seeds = [seed_of(*map(int, row)) for row in jax.random.key_data(keys).reshape(-1, 2)]
         copies = copies_of(self.episode, seeds)
+        self._acting.begin(keys)
         obs, done, returns = copies.reset(), np.zeros(len(seeds), bool), np.zeros(len(seeds))
         flagged, success = False, np.zeros(len(seeds))
         while not done.all():
             if cut():
                 copies.close()
                 return None
-            seen = obs.reshape(*shape, -1)
-            u, control, keys = self._decide(self.numbers, params, control, seen, keys)
-            got = copies.step(np.asarray(u).reshape(len(seeds), -1))
+            u = self._acting(params, obs.reshape(*keys.shape, -1))
+            got = copies.step(u.reshape(len(seeds), -1))
             returns += np.where(done, 0, got.reward)
             if copies.success is not None:
                 flagged, success = True, np.where(done, success, copies.success)
             done, obs = done | got.terminated | got.truncated, got.following
         copies.close()
         found = {"return": returns} | ({"success": success} if flagged else {})
-        return {name: values.reshape(shape) for name, values in found.items()}
+        return {name: values.reshape(keys.shape) for name, values in found.items()}
 
 
 def copies_of(episode: Episode, seeds: Sequence[int]) -> Copies:
