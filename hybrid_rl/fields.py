@@ -38,19 +38,26 @@ LARGEST = 2**30  # whole number of a field: sums of two of them fit 32 bits
 
 
 class FieldError(ValueError):
-    """A field of a part is out of its range; `line` is FIELD=VALUE: what it must be.
+    """A field of a part is out of its range: its path, its value, and what that must be.
 
-    lacks: the method that the value should have, if that is what is wrong.
+    The path is the field's name, and grows by `at` to its key in a configuration. lacks: the method
+    that the value should have, if that is what is wrong.
     """
 
-    def __init__(self, part: Any, name: str, words: str, lacks: str = "") -> None:
-        self.lacks = lacks
-        self.line, self.words = f"{name}={as_yaml(getattr(part, name))}: {words}", words
-        super().__init__(f"{type(part).__name__}: {self.line}")
+    def __init__(self, part: Any, name: str, must: str, lacks: str = "") -> None:
+        self.path, self.value, self.must = name, as_yaml(getattr(part, name)), must
+        self.lacks, self.kind = lacks, type(part).__name__
+        super().__init__(f"{self.kind}: {self.line}")
+
+    @property
+    def line(self) -> str:
+        """KEY=VALUE: what it must be."""
+        return f"{self.path}={self.value}: {self.must}"
 
     def at(self, key: str) -> Self:
         """This error, of the part at a key of a configuration."""
-        self.args = (f"{key}.{self.line}",)
+        self.path = f"{key}.{self.path}"
+        self.args = (self.line,)
         return self
 
 

@@ -27,7 +27,7 @@ if __name__ == "__main__":
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -45,169 +45,34 @@ from hybrid_rl.cli.arguments import (
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.logs.progress import say
 
+if TYPE_CHECKING:
+    from hybrid_rl.analysis.film import Film
+    from hybrid_rl.run.saved import Trained
+    from hybrid_rl.training.episode import Episode
+
+SIZE = (640, 480)  # [pixels]
 ARGUMENTS = (
     *ROBOT,
     Argument("out", "", "the file; empty: DIR/video.mp4 or TASK.mp4"),
     Argument("episode", 0, "number of the evaluation's episode, from 0", whole(least=0)),
     Argument("at", [], "decisions after which a .png shows the episode", numbers(whole(least=0))),
     Argument("episode_steps", 0, "decisions at most; 0: the task's limit, see above", whole()),
-    Argument("width", 640, "of the picture, in pixels", whole(even=True)),
-    Argument("height", 480, "of the picture, in pixels", whole(even=True)),
+    Argument("width", SIZE[0], "of the picture, in pixels", whole(even=True)),
+    Argument("height", SIZE[1], "of the picture, in pixels", whole(even=True)),
 )
 FAR = 0.01  # of an observation in a replayed scene; more is reported
-FASTEST = 60.0  # [1/s] pictures at most; faster worlds skip some
-FIRST = 200  # pictures of a video that the processor draws, unless episode_steps is given
-
-
-class Film(NamedTuple):
-    """One episode, to be drawn."""
-
-    poses: np.ndarray  # [frames, nq]
-    total: float  # undiscounted return
-    success: bool | None  # at the end; None: the task has no measure of it
-
-
-def episode(
-    trained: Any, mode: str = "full", seed: int | None = None, steps: int = 0, number: int = 0
-) -> Film:
-    """One episode of a loaded run.
-
-    trained: what `hybrid_rl.run.saved.load` returns. seed: of one of its learners; None is
-    the first. steps: at most this many decisions; 0 is the task's own limit. number: of the
-    evaluation's episode, from 0.
-    """
-    from hybrid_rl.training.rollout import evaluation_keys
-
-    seed = int(trained.seeds[0]) if seed is None else seed
-    world = replace(trained.episode, steps=steps or trained.episode.steps)
-    controller, params = trained.learner(seed, mode, world=True)
-    return film(world, controller, params, evaluation_keys(seed, number + 1)[-1])
-
-
-def film(world: Any, controller: Any, params: Any, key: Any) -> Film:
-    """One episode of `world` under `controller` with `params`."""
-    import jax
-
-    from hybrid_rl.envs.mujoco.scenery import pose_of
-    from hybrid_rl.training.rollout import rollout
-
-    def go(params: Any, key: Any) -> tuple:
-        states = rollout(world, controller, params, key, world.steps)
-        poses = jax.vmap(pose_of(world.env))(states)
-        return poses, states.done, states.clock.total, states.metrics.get("success")
-
-    poses, done, returns, success = jax.jit(go)(params, key)
-    last = int(np.argmax(done)) if np.any(done) else world.steps
-    succeeded = None if success is None else bool(success[last])
-    return Film(np.asarray(poses)[: last + 1], float(returns[last]), succeeded)
-
-
-def draw_film(world: Any, shown: Film, out: Path, width: int = 640, height: int = 480) -> None:
-    """Write an episode of `world` to a file of one of drawing.SUFFIXES, in real time."""
-    from hybrid_rl.analysis.drawing import draw
-    from hybrid_rl.envs.mujoco.scenery import scene_of
-
-    stride = _stride(world)
-    rate = 1 / (world.spec.dt * stride)
-    draw(scene_of(world.env), shown.poses[::stride], out, rate, width, height)
-
-
-def _stride(world: Any) -> int:
-    """Decisions from one picture to the next."""
-    return int(np.ceil(1 / world.spec.dt / FASTEST))
-
-
-def _steps(world: Any, asked: int, out: Path) -> int:
-    """Decisions of `world` at most; asked: by the user, 0 for the default."""
-    from hybrid_rl.envs.mujoco import offscreen
-
-    if asked or out.suffix == ".png" or not offscreen.by_processor():
-        return asked or world.steps
-    return min(world.steps, FIRST * _stride(world))
-
-
-def _episode_of(
-    given: dict[str, Any], changes: dict[str, str], out: Path, trained: Any
-) -> tuple[Any, str, Film]:
-    """(world with its clock, whose actions, episode) that the arguments name.
-
-    trained: None with task=T.
-    """
-    from hybrid_rl.envs.mujoco.scenery import check_drawable
-
-    seed, asked, number = (given[name] for name in ("seed", "episode_steps", "episode"))
-    if trained is None:
-        from hybrid_rl.demonstrate import scripted_expert
-        from hybrid_rl.training.rollout import evaluation_keys
-
-        world, controller, params = scripted_expert(given, changes)
-        check_drawable(world.env)
-        begun = replace(world, steps=_steps(world, asked, out))
-        key = evaluation_keys(seed or 0, number + 1)[-1]
-        return world, "scripted expert", film(begun, controller, params, key)
-    check_drawable(trained.episode.env)
-    steps = _steps(trained.episode, asked, out)
-    shown = episode(trained, given["mode"], seed, steps, number)
-    return trained.episode, f"step {trained.step:,}", shown
-
-
-def _outside(trained: Any, given: dict[str, Any], out: Path) -> None:
-    """Draw an episode of a Gymnasium environment, which draws itself."""
-    import jax
-
-    from hybrid_rl.analysis.drawing import write
-    from hybrid_rl.envs.mujoco import offscreen
-    from hybrid_rl.outside.acting import TrainedPolicy
-    from hybrid_rl.outside.host_loop import seed_of
-    from hybrid_rl.training.rollout import evaluation_keys
-
-    if given["at"] or (given["width"], given["height"]) != (640, 480):
-        raise UsageError("at, width, height: a Gymnasium environment draws itself in its own size")
-    seed, world = given["seed"], trained.episode
-    policy = TrainedPolicy(world.spec, *trained.learner(seed, given["mode"]))
-    key = evaluation_keys(trained.seeds[0] if seed is None else seed, given["episode"] + 1)[-1]
-    seeds = [seed_of(*map(int, jax.random.key_data(key)))]
-    offscreen.lend()
-    copies = world.env.copies(seeds, world.steps, world.action_repeat, "rgb_array")
-    obs, total, pictures = copies.reset()[0], 0.0, [copies.picture()]
-    for _ in range(given["episode_steps"] or world.steps):
-        got = copies.step(policy(obs)[None])
-        obs, total = got.following[0], total + float(got.reward[0])
-        if got.terminated[0] or got.truncated[0]:
-            break
-        pictures.append(copies.picture())
-    copies.close()
-    fps = 1 / world.spec.dt
-    write(out, len(pictures), fps, lambda shown, smooth: [pictures[i] for i in shown])
-    print(f"{out}: {len(pictures)} pictures, return {total:,.1f}, step {trained.step:,}")
-
-
-def _training(
-    folder: Path, seed: int | None, steps: int, out: Path, width: int, height: int
-) -> None:
-    """Draw the first episode of training, with the belief at the right."""
-    from hybrid_rl.analysis.drawing import draw
-    from hybrid_rl.envs.mujoco.scenery import check_drawable, scene_of
-    from hybrid_rl.thesis.studies.belief_video import MOST, film
-
-    shown = film(folder, seed, steps, height, MOST[out.suffix])
-    check_drawable(shown.world)
-    draw(scene_of(shown.world), shown.poses, out, shown.fps, width, height, shown.panel)
-    speed = "" if out.suffix == ".png" else f", {shown.speed:.2g} times real time"
-    print(f"{out}: {shown.decisions} decisions, return {shown.total:,.1f}, of training{speed}")
-    if shown.apart > FAR:
-        print(f"the scene differs by up to {shown.apart:.2g} from the recorded observations")
 
 
 def main() -> None:
     """The command."""
     given, changes = read(__doc__, ARGUMENTS, ROBOT_CHANGES)
     named = robot(given, changes)
-    from hybrid_rl.analysis.drawing import SUFFIXES, draw_beside
-    from hybrid_rl.envs.adapters.external import External
+    from hybrid_rl.analysis import film  # imports JAX, for seconds
+    from hybrid_rl.analysis.drawing import SUFFIXES
     from hybrid_rl.envs.mujoco import offscreen
-    from hybrid_rl.envs.mujoco.scenery import scene_of
+    from hybrid_rl.run.recording import scripted_expert
     from hybrid_rl.run.retarget import load_changed
+    from hybrid_rl.training.rollout import evaluation_keys
 
     default = f"{named}/video.mp4" if given["run"] else f"{Path(named).stem}.mp4"
     out = Path(given["out"] or default)
@@ -215,36 +80,78 @@ def main() -> None:
         output("out", out, SUFFIXES)
     if given["at"] and out.suffix != ".png":
         raise UsageError(f"at={','.join(map(str, given['at']))}: needs out=FILE.png")
-    width, height = given["width"], given["height"]
     offscreen.backend()  # raises before minutes of work
-    offscreen.check_size(width, height)
-
+    offscreen.check_size(given["width"], given["height"])
     if given["mode"] == "training" and given["run"]:
-        _training(Path(given["run"]), given["seed"], given["episode_steps"], out, width, height)
-        return
-    trained = None if given["task"] else load_changed(given, changes)[0]
-    for note in trained.notes if trained is not None else ():
-        print(note)
-    if trained is not None and isinstance(trained.episode.env, External):
-        _outside(trained, given, out)
-        return
-    if trained is not None:
-        trained.learner(given["seed"], given["mode"], world=True)  # refuses what it lacks
-    say("compiling an episode ...")  # of a planner, a minute
-    world, by, shown = _episode_of(given, changes, out, trained)
-    if given["at"]:
-        last = len(shown.poses) - 1
-        poses = shown.poses[np.minimum(given["at"], last)]
-        draw_beside(scene_of(world.env), poses, out, width, height)
-        if late := [str(at) for at in given["at"] if at > last]:
-            print(f"at={','.join(late)}: the episode ends after {last} decisions, shown instead")
+        _draw_training(given, out)
+    elif given["task"]:
+        world, controller, params = scripted_expert(given, changes)
+        begun = replace(world, steps=film.length(world, given["episode_steps"], out))
+        key = evaluation_keys(given["seed"] or 0, given["episode"] + 1)[-1]
+        say("compiling an episode ...")
+        shown = film.film(begun, controller, params, key)
+        _draw(world, shown, given, out, "scripted expert")
     else:
-        draw_film(world, shown, out, width, height)
+        trained = load_changed(given, changes)[0]
+        print(*(f"{note}\n" for note in trained.notes), sep="", end="")
+        _draw_trained(trained, given, out)
+
+
+def _draw_trained(trained: "Trained", given: dict[str, Any], out: Path) -> None:
+    """Draw an episode of a learner."""
+    from hybrid_rl.analysis import film
+    from hybrid_rl.envs.adapters.external import External
+
+    which = (given["mode"], given["seed"])
+    if isinstance(trained.episode.env, External):
+        if given["at"] or (given["width"], given["height"]) != SIZE:
+            line = "a Gymnasium environment draws itself in its own size"
+            raise UsageError(f"at, width, height: {line}")
+        steps, number = given["episode_steps"], given["episode"]
+        pictures, total = film.draw_outside(trained, *which, steps, number, out)
+        print(f"{out}: {pictures} pictures, return {total:,.1f}, step {trained.step:,}")
+        return
+    trained.learner(given["seed"], given["mode"], world=True)  # refuses what it lacks
+    say("compiling an episode ...")  # of a planner, a minute
+    steps = film.length(trained.episode, given["episode_steps"], out)
+    shown = film.episode(trained, *which, steps, given["episode"])
+    _draw(trained.episode, shown, given, out, f"step {trained.step:,}")
+
+
+def _draw(world: "Episode", shown: "Film", given: dict[str, Any], out: Path, by: str) -> None:
+    """Write an episode of `world`, and print its length and return; by: whose actions."""
+    from hybrid_rl.analysis import film
+
+    decisions, size = len(shown.poses) - 1, (given["width"], given["height"])
+    if given["at"]:
+        poses = shown.poses[np.minimum(given["at"], decisions)]
+        film.draw_beside(world, poses, out, *size)
+        if late := [str(at) for at in given["at"] if at > decisions]:
+            line = f"the episode ends after {decisions} decisions, shown instead"
+            print(f"at={','.join(late)}: {line}")
+    else:
+        film.draw_film(world, shown, out, *size)
     ended = {True: ", success", False: ", no success", None: ""}[shown.success]
-    decisions = len(shown.poses) - 1
     print(f"{out}: {decisions} decisions, return {shown.total:,.1f}{ended}, {by}")
-    if not given["episode_steps"] and decisions == _steps(world, 0, out) < world.steps:
+    if not given["episode_steps"] and decisions == film.length(world, 0, out) < world.steps:
         print(f"the beginning, as there is no graphics card; all: episode_steps={world.steps}")
+
+
+def _draw_training(given: dict[str, Any], out: Path) -> None:
+    """Draw the first episode of training, with the belief at the right."""
+    from hybrid_rl.analysis.drawing import draw
+    from hybrid_rl.envs.mujoco.scenery import check_drawable, scene_of
+    from hybrid_rl.thesis.studies import belief_video as video
+
+    folder, seed, steps = Path(given["run"]), given["seed"], given["episode_steps"]
+    shown = video.film(folder, seed, steps, given["height"], video.MOST[out.suffix])
+    check_drawable(shown.world)
+    size = given["width"], given["height"]
+    draw(scene_of(shown.world), shown.poses, out, shown.fps, *size, shown.panel)
+    speed = "" if out.suffix == ".png" else f", {shown.speed:.2g} times real time"
+    print(f"{out}: {shown.decisions} decisions, return {shown.total:,.1f}, of training{speed}")
+    if shown.apart > FAR:
+        print(f"the scene differs by up to {shown.apart:.2g} from the recorded observations")
 
 
 if __name__ == "__main__":

@@ -13,10 +13,10 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from hybrid_rl.analysis.drawing import frames
+from hybrid_rl.analysis.film import episode
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, output, read, whole
 from hybrid_rl.envs.mujoco.scenery import scene_of
-from hybrid_rl.render import episode
 from hybrid_rl.run.retarget import retargeted
 from hybrid_rl.run.saved import Trained
 from hybrid_rl.run.saved import read as policy

@@ -1,6 +1,7 @@
 """The configuration: every choice composes, and every file lists the fields of its part."""
 
 import dataclasses
+import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -17,19 +18,21 @@ from hybrid_rl.controllers.gradient import GradientController
 from hybrid_rl.files import targets as parts
 from hybrid_rl.settings import build as config
 from hybrid_rl.settings.groups import file, options
+from hybrid_rl.settings.registry import choices
 
-PARTS = [
-    path
-    for path in sorted(config.CONF.rglob("*.yaml"))
-    if "_target_" in path.read_text(encoding="utf-8") and "hydra" not in path.parts
-]
+PARTS = {  # every class that a choice of a group, or a file of conf/, names
+    *(kind for names in choices(config.CONF).values() for kind in names.values()),
+    *re.findall(
+        r"_target_: (hybrid_rl\.\S+)",
+        "\n".join(path.read_text(encoding="utf-8") for path in config.CONF.rglob("*.yaml")),
+    ),
+}
 
 
-@pytest.mark.parametrize("path", PARTS, ids=lambda p: str(p.relative_to(config.CONF)))
-def test_a_part_with_ranges_checks_them(path: Path) -> None:
+@pytest.mark.parametrize("name", sorted(PARTS))
+def test_a_part_with_ranges_checks_them(name: str) -> None:
     """A class whose fields declare a range is made by `fields.part`, not by `dataclass`."""
-    node = OmegaConf.load(path)
-    kind = get_class(node.get("env", node)._target_)
+    kind = get_class(name)
     if "Must(" in str([field.type for field in dataclasses.fields(kind)]):
         assert kind.__post_init__.__qualname__.startswith("part.")
 

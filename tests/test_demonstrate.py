@@ -124,7 +124,7 @@ def test_a_regulator_of_recordings_outlives_them(tmp_path):
 @pytest.mark.parametrize(
     ("given", "line"),
     [
-        ("expert=regulator", "task=quadcopter: its expert needs an analytic environment; choose"),
+        ("expert=regulator", "task=quadcopter: its expert needs an analytic environment; `python"),
         (
             "expert=babble expert.controller.action=[0.4]",
             "expert.controller.action=[0.4]: must be a number",

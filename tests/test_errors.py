@@ -1,13 +1,19 @@
-"""Wrong usage of `train` is one line and exit code 2, and nothing is written."""
+"""Wrong usage is one line that names key and value, and nothing on the disk changes."""
 
+import shutil
+import subprocess
+import sys
 from importlib import import_module
 
 import jax
 import pytest
 from omegaconf import OmegaConf
-from tiny import call, call_train, contents, only_line
+from tiny import TINY, call, call_train, contents, only_line, run
 
+from hybrid_rl import demonstrate, evaluate, figures, render
+from hybrid_rl import list as listed
 from hybrid_rl.cli import command
+from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.errors import UsageError
 from hybrid_rl.settings import build as config
 from hybrid_rl.settings import words as overrides
@@ -15,235 +21,126 @@ from hybrid_rl.settings.values import COUNTS
 
 pytestmark = pytest.mark.turns(3)
 
+MAINS = {
+    "demonstrate": demonstrate.main,
+    "evaluate": evaluate.main,
+    "render": render.main,
+    "figures": figures.main,
+    "list": listed.main,
+}
 COUNT = "must be a whole number, 1 or more"
-
-
-USAGE = [  # overrides of train, words of the line
+NO_KEY = "hybrid_stochastic has no such key"
+USAGE = [  # overrides of train, after task=pendulum algo=hybrid_stochastic; words of the line
+    # names
     ("task=cartpool", "task=cartpool: unknown; choose one of ant, cart_double_pendulum"),
-    ("algo=ppo", " in `python -m hybrid_rl.list`; nearest: mppi; your own algo/ppo.yaml needs"),
-    ("algo=dqn", "algo=dqn: unknown; choose one of the 6"),
-    ("task=null", "task=null: choose one of ant, cart_double_pendulum"),
-    ("constraint=3", "constraint=3: choose one of height, limit, pitch"),
-    ("reward=3", "reward=3: choose one of aim, height, level"),
-    ("reward_model=true", "reward_model=true: choose one of known, network, "),
-    ("controller@planner=3", "controller@planner=3: choose one of adjoint, "),
-    ("experiment=null", "experiment=null: choose one of the 4"),
-    ("env=null", "env=null: must be a group of keys"),
-    (
-        "task=pendulum,cartpole",
-        "task=pendulum,cartpole: several values are a sweep, which needs -m",
-    ),
-    (
-        "task=pendulum algo=sac experiment=thesis/fig_3_2_hopper",
-        "env.reward: Pendulum has no fields",
-    ),
-    (
-        "task=pendulum algo=localisation",
-        "which localisation (free_body.acceleration) reads; choose one of contact_plane, sawyer_p",
-    ),
-    ("task=pendulum algo=mapping", "has no env.acceleration, which mapping (free_body.accelerat"),
-    (
-        "task=pendulum algo=mppi policy=tanh_gaussian proposal=policy",
-        "policy=TanhGaussian: PolicyProposal acts by it, and no learner of this method trains it",
-    ),
-    (
-        "task=pendulum algo=mppi model=gaussian",
-        "model=Gaussian: SamplingController acts by it, and no learner of this method trains it; ",
-    ),
-    ("--config-name other", "--config-name: a run has one configuration; choose by experiment="),
-    ("eval_modes=[full,full]", "eval_modes=[full,full]: has one of them twice"),
-    ("seed=${seeds}", "to seeds, which neither this task nor this method sets; give seed=VALUE"),
-    ("run_dir=läufe", "run_dir=läufe: ä stands outside quotes; write key=value, text as 'key="),
-    ("episode.randomise=[0.7,1.3]", "hybrid_rl: episode.randomise: must be a group of keys; "),
-    ("task=gymnasium env.id=Pendulum-v1 reward=speed", "task=Pendulum-v1: reward needs an envi"),
-    ("episode=3", "episode=3: must be a group of keys"),
-    (
-        "objective=foo",
-        "objective=foo: unknown; choose one of disagreement, fisher, fourier_ergodic, ",
-    ),
-    ("experiment=foo", "experiment=foo: unknown; choose one of the 4"),
-    ("experiment=thesis/fig_33", "`python -m hybrid_rl.list`; nearest: thesis/fig_3_3; "),
-    ("task=gymnasium algo=mppi", "Pendulum-v1: mppi plans on the true dynamics, and this task st"),
-    ("task=Hopper-v5", "walker2d; did you mean task=gymnasium env.id=Hopper-v5?"),
-    ("task=gymnasium env.id=lab/A-v0", "Have you installed the proper package for lab?"),
-    ("task=mine:Env", "walker2d; did you mean task=gymnasium env.make=mine:Env?"),
-    (
-        "task=gymnasium env.id=Hopper-v5 env.make=mine:Env",
-        "env.id=Hopper-v5: env.make=mine:Env is another environment; give one of them",
-    ),
     ("task=pendulm", "walker2d; did you mean pendulum?"),
+    ("task=Hopper-v5", "walker2d; did you mean task=gymnasium env.id=Hopper-v5?"),
+    ("task=mine:Env", "walker2d; did you mean task=gymnasium env.make=mine:Env?"),
+    ("task=null", "task=null: unknown; choose one of ant, "),
+    ("env=pendulum", "env=pendulum: must be a group of keys; did you mean task=pendulum?"),
+    ("algo=SAC", "in `python -m hybrid_rl.list`; did you mean sac?"),
+    ("algo=dqn", "your own algo/dqn.yaml needs config_dir=FOLDER"),
+    ("experiment=thesis/fig_33", "`python -m hybrid_rl.list`; did you mean thesis/fig_3_3?"),
+    ("objective=foo", "objective=foo: unknown; choose one of disagreement, fisher, "),
     ("hydra/launcher=joblib", "hydra/launcher=joblib: unknown; choose one of basic, submitit_"),
-    ("hydra/launcher=submitit_slurm", "submitit_slurm: sends the jobs of a sweep; add -m"),
-    ("algo=kle3 settings=light", "settings=light: is not for this method, which has no proposal"),
-    ("algo=nn_mppi reward_model=quadratic", "QuadraticReward has world, state_weights, action_we"),
-    ("sed=3", "sed: hybrid_stochastic has no such key; did you mean seed?"),
-    (
-        "experment=thesis/fig_3_3",
-        "experment: hybrid_stochastic has no such key; did you mean experiment?",
-    ),
-    ("total_step=3", "total_step: hybrid_stochastic has no such key; did you mean total_steps?"),
-    ("xyz=3", "xyz: hybrid_stochastic has no such key; `--cfg job` shows every key"),
-    (
-        "task=pendulum env.id=Hopper-v5",
-        "env.id: hybrid_stochastic has no such key; env has no keys",
-    ),
-    (
-        "policy.target=1",
-        "policy.target: hybrid_stochastic has no such key; policy has hidden, acti",
-    ),
-    ("planner.horizn=3", "has no such key; did you mean planner.horizon?"),
-    ("planner.policy.hidden=[3]", "planner.policy={'hidden': [3]}: must be a part, or null"),
-    (
-        "temperature=3",
-        "temperature: hybrid_stochastic has no such key; did you mean planner.temper",
-    ),
+    # keys
+    ("sed=3", f"sed: {NO_KEY}; did you mean seed?"),
+    ("++planner.horizn=3", f"planner.horizn: {NO_KEY}; did you mean planner.horizon?"),
+    ("experment=thesis/fig_3_3", f"experment: {NO_KEY}; did you mean experiment?"),
+    ("gamma=0.9", f"gamma: {NO_KEY}; did you mean policy_learner.discount?"),
+    ("total_timesteps=9", f"{NO_KEY}; did you mean total_steps?"),
     (
         "algo=sac learning_rate=1",
         "sac has no such key; did you mean policy_learner.policy_learning",
     ),
-    (
-        "policy_learner.rl=1",
-        "hybrid_stochastic has no such key; policy_learner has policy, critic, ",
-    ),
-    ("policy_learner.lr=1", "has no such key; did you mean policy_learner.policy_learning_rate?"),
-    (
-        "gamma=0.9",
-        "gamma: hybrid_stochastic has no such key; did you mean policy_learner.discount?",
-    ),
-    ("algo=sac policy_learner.gamma=1", "did you mean policy_learner.discount?"),
-    ("total_timesteps=9", "hybrid_stochastic has no such key; did you mean total_steps?"),
-    ("algo=SAC", "in `python -m hybrid_rl.list`; nearest: sac"),
-    ("algo=nn_mppi planner=gradient", "policy=TanhGaussian: GradientController acts by it, and no"),
-    ("env=pendulum", "env=pendulum: must be a group of keys; did you mean task=pendulum?"),
-    ("planner=mine", "planner=mine: unknown; choose one of adjoint, gradient, refits, shooting"),
-    ("controllers.full=${gradient}", "controllers.full: refers to gradient, which neither this "),
-    ("controllers.full=${controllers.full}", "controllers.full: refers to itself"),
-    ("total_steps 100", "total_steps: has no value; write total_steps=100"),
-    ("task = pendulum", "task: has no value; write task=pendulum"),
-    ("--task pendulum", "--task: unknown option; write task=pendulum"),
-    ("--total-steps 10", "--total-steps: unknown option; write total_steps=10"),
-    ("-m algo=sac --cfg job", "-m, --cfg: give one of them"),
-    ("resume=", "resume=: no run folder there (no config.yaml in it)"),
-    ("algo=sac replay.capacity=9", "replay.capacity=9: holds less than one batch, policy_learner."),
-    ("algo=sac -m seed=-1,0", "seed=-1: must be a whole number, 0 or more (job 0: seed=-1)"),
-    ("eval_modes=[full, policy]", "policy]: has no key; put a list in quotes"),
     ("algo=sac planner.horizon=7", "planner.horizon: sac has no such key"),
+    ("algo=nn_mppi proposal=mixture", "nn_mppi has no such key; did you mean model_proposal?"),
+    ("policy.target=1", f"policy.target: {NO_KEY}; policy has hidden, acti"),
+    ("xyz=3", f"xyz: {NO_KEY}; `--cfg job` shows every key"),
+    ("episode.late=1", f"episode.late: {NO_KEY}; episode has delay"),
+    ("seed=${seeds}", "seed: Interpolation key 'seeds' not found"),
+    ("controller@mine=goal", "Could not override 'controller@mine'"),
+    ("objective=weighted_sum", "objective.terms.task: Interpolation to parent node detected"),
+    # how it is written
+    ("total_steps 100", "total_steps: is no KEY=VALUE; write total_steps=100"),
+    ("task = pendulum", "task: is no KEY=VALUE; write task=pendulum"),
+    ("--total-steps 10", "--total-steps: is no KEY=VALUE; write total_steps=10"),
     (
-        "algo=nn_mppi proposal=mixture",
-        "proposal: nn_mppi has no such key; did you mean model_proposal?",
+        "eval_modes=[full, policy]",
+        "policy]: is no KEY=VALUE; write a list in quotes: 'KEY=[A, B]'",
     ),
+    ("run_dir=läufe", "run_dir=läufe: cannot be read; write key=value, text as 'key="),
+    ("task=pendulum,cartpole", "Ambiguous value for argument 'task=pendulum,cartpole'; 1. To "),
+    ("hydra/launcher=submitit_slurm", "submitit_slurm: sends the jobs of a sweep; add -m"),
+    ("algo=sac -m seed=-1,0", "seed=-1: must be a whole number, from 0 to 4294967295 (job 0: seed"),
+    # values
+    ("num_envs=2.5", f"num_envs=2.5: {COUNT}"),
+    ("seed=4294967290 num_seeds=8", "must be a whole number, from 0 to 4294967288"),
     (
-        "algo=nn_mppi objective=fisher",
-        "objective: nn_mppi has no such key; did you mean model_objective?",
+        "total_steps=2147483648",
+        "total_steps=2147483648: must be a whole number, from 1 to 2147483647",
     ),
-    (
-        "objective=weighted_sum",
-        "objective.discount: WeightedSum has terms, weights, decays; leave it",
-    ),
-    (
-        "algo=nn_mppi planner.execute=mean",
-        "nn_mppi has no such key; did you mean model_planner.execute?",
-    ),
-    (
-        "algo=deterministic_mpc planner.horizon=7",
-        "deterministic_mpc has no such key; did you mean adjoint_planner",
-    ),
-    ("controller@mine=goal", "the method has no such part; +controller@mine=NAME adds it"),
-    ("domain.low=[0]", "domain.low: hybrid_stochastic has no such key"),
-    ("demonstrations=file algo=sac", "demonstrations: sac has no such key"),
-    ("task=cartpole env.reward=foo", "env.reward=foo: choose one of cos, dm_control"),
-    (
-        "task=halfcheetah algo=kle3",
-        "task=halfcheetah: kle3 needs an analytic environment; choose",
-    ),
-    ("policy_learner.tau=nan", "policy_learner.tau=nan: must be finite"),
-    ("policy_learner.policy_learning_rate=inf", "policy_learning_rate=inf: must be finite"),
-    ("seed=nan", "seed=nan: must be"),
+    ("planner.samples=0", f"planner.samples=0: {COUNT}"),
     ("algo=nn_mppi model_planner.temperature=0", "model_planner.temperature=0: must be above 0"),
-    ("+sed=3", "sed: hybrid_stochastic has no such key"),
-    ("++planner.horizn=3", "planner.horizn: hybrid_stochastic has no such key"),
-    ("total_steps", "total_steps: has no value; write total_steps=VALUE"),
+    ("planner.temperature=hot", "planner.temperature=hot: must be a number"),
+    ("policy_learner.tau=nan", "policy_learner.tau=nan: must be finite"),
+    ("policy_learner.updates=1.5", "policy_learner.updates=1.5: with num_envs=1 this gives 1.5"),
+    ("policy.hidden=16", "policy.hidden=16: must be a list"),
+    ("planner.policy.hidden=[3]", "planner.policy={'hidden': [3]}: must be a part, or null"),
+    ("task=cartpole env.reward=foo", "env.reward=foo: choose one of cos, dm_control"),
+    ("eval_modes=[full,both]", "eval_modes=['full', 'both']: must be a list of full"),
+    ("checkpoint_replay=0", "checkpoint_replay=0: choose one of true, false"),
     ("physics=bullet", "physics=bullet: choose one of auto, native, mjx, warp"),
     ("task=cartpole physics=warp", "physics=warp: must have an NVIDIA GPU"),
-    *((f"{key}=0", f"{key}=0: {COUNT}") for key in ("total_steps", "planner.samples")),
-    ("policy_learner.batch_size=2.5", "policy_learner.batch_size=2.5: must be a whole number"),
-    ("num_envs=2.5", f"num_envs=2.5: {COUNT}"),
-    ("num_envs=many", f"num_envs=many: {COUNT}"),
-    ("seed=-1", "seed=-1: must be a whole number, 0 or more"),
-    ("seed=4294967296", "seed=4294967296: must be at most 4294967295 with num_seeds=1"),
-    ("seed=4294967290 num_seeds=8", "seed=4294967290: must be at most 4294967288 with num_seeds=8"),
-    ("planner.temperature=0", "planner.temperature=0: must be above 0"),
-    ("planner.temperature=-0.1", "planner.temperature=-0.1: must be above 0"),
-    ("planner.temperature=hot", "planner.temperature=hot: must be a number"),
-    ("policy.hidden=16", "policy.hidden=16: must be a list"),
-    ("policy.hidden=(9,9)", "policy.hidden=(9,9): extraneous input '('; write key=value, text as"),
-    ("episode.action_noise=a", "episode.action_noise=a: must be 0 or more"),
-    ("policy.hidden=[0]", "policy.hidden=[0]: must be a whole number, 1 or more"),
-    ("policy_learner.updates=1.5", "policy_learner.updates=1.5: with num_envs=1 this gives 1.5"),
-    ("eval_modes=[full,both]", "eval_modes=[full,both]: must be a list of full, policy"),
-    ("eval_modes=full", "eval_modes=full: must be a list of full, policy, planner"),
-    ("checkpoint_replay=0", "checkpoint_replay=0: must be true or false"),
-    ("precision=low", "precision=low: choose one of auto, mixed, bf16, tf32, float32"),
+    ("algo=sac replay.capacity=9", "replay.capacity=9: holds less than one batch, policy_learner."),
     ("replay.capacity=1000000000 total_steps=2147483647", "learners would take"),
-    ("algo=bc", "demonstrations=demonstrations/pendulum.npz: no such file; `python -m hybrid_rl"),
-    ("algo=bc demonstrations=null", "demonstrations.file=null: must be a word"),
-    ("algo=bc num_demonstrations=0", "num_demonstrations=0: must be 1 or more"),
-    ("pretrain=3", "pretrain=3: the memory has no demonstrations to learn from"),
-    ("pretrain=-1", "pretrain=-1: must be a whole number, 0 or more"),
-    (
-        "task=halfcheetah algo=koopman_active",
-        "task=halfcheetah: koopman_active needs an environment with an equilibrium; choose",
-    ),
-    (
-        "task=pendulum algo=koopman_track",
-        "koopman_track needs an environment with a reference; choose one of s",
-    ),
-    (
-        "task=pendulum algo=koopman_active features=quadcopter",
-        "features.coordinates=[9, 10, 11, 15, 16, 17, 12, 13, 14]: the observation of this task",
-    ),
-    (
-        "algo=koopman_active features.terms=[[0,9]]",
-        "features.terms=[0, 9]: has an index above 2, the last coordinate",
-    ),
-    ("algo=koopman_active policy_learner.horizon=0", f"policy_learner.horizon=0: {COUNT}"),
-    ("algo=koopman_active model_learner.forgetting=0", "learner.forgetting=0: must lie in (0, 1]"),
-    (
-        "algo=koopman_known demonstrations=demonstrations/quadcopter_se3.npz",
-        "is of task quadcopter_se3; this run has task pendulum",
-    ),
-    (
-        "task=quadcopter_se3 algo=koopman_known num_demonstrations=1",
-        "demonstrations: 20 decisions are too few for 22 regressors",
-    ),
-    ("algo=fisher model=exact", "model_learner.model=Exact: has no weights to learn; choose"),
-    ("algo=nn_mppi reward_model=known reward_model.ends=null", "give model_learner.reward=null"),
-    (
-        "task=halfcheetah algo=fisher",
-        "task=halfcheetah: fisher needs an environment with a known reward; choose one of cart_",
-    ),
-    *(
-        (f"task=contact_plane algo=ergodic_localisation {override}", words)
-        for override, words in (
-            ("map=learned map.file=nowhere.npz", "map.file=nowhere.npz: no such file"),
-            (
-                "episode.steps=60 belief.capacity=50",
-                "belief.capacity=50: an episode has 60 measurements, and poses need all of them",
-            ),
-            (
-                "env.objects=[[0.5,0.5,0,0.45,0.45,0.01]]",
-                "env.objects=[[0.5,0.5,0,0.45,0.45,0.01]]: leave no room to start; 20% of the box",
-            ),
-            ("env.objects=[[1.5,0.5,0,0.1,0.1,0.1]]", "its middle lies outside of the box"),
-        )
-    ),
-    ("algo=fisher information.floor=0", "information.floor=0: must be above 0"),
-    ("algo=disagreement model=gaussian", "information.model=Gaussian: needs an ensemble"),
-    ("resume=nowhere", "resume=nowhere: no run folder there"),
-    ("run_dir=", "run_dir=: is empty; give a folder, or leave it out"),
-    ("total_steps=2147483648", "total_steps=2147483648: must be at most 2147483647: decisions"),
-    ("total_steps=99999999999999999999", "must be at most 2147483647: decisions are counted in"),
     ("run_dir=/dev/null/run", "run_dir=/dev/null/run: cannot be written to (Not a directory)"),
+    # methods and tasks that do not fit
+    ("task=halfcheetah algo=kle3", "task=halfcheetah: kle3 needs an analytic environment; `python"),
+    ("algo=koopman_track", "koopman_track needs an environment with a reference; `python"),
+    ("algo=localisation", "free_body.acceleration: Interpolation key 'env.acceleration' not found"),
+    ("algo=nn_mppi planner=gradient", "policy=TanhGaussian: GradientController acts by it, and no"),
+    ("algo=disagreement model=gaussian", "information.model=Gaussian: needs an ensemble"),
+    ("algo=kle3 settings=light", "In 'settings/light': Could not override 'proposal'"),
+    ("task=gymnasium algo=mppi", "mppi plans on the true dynamics, and this task st"),
+    ("task=gymnasium env.id=Pendulum-v1 reward=speed", "task=Pendulum-v1: reward needs an envi"),
+    ("algo=koopman_active features.terms=[[0,9]]", "features.terms=[0, 9]: has an index above 2"),
+    # files and folders
+    ("algo=bc", "demonstrations=demonstrations/pendulum.npz: no such file; `python -m hybrid_rl"),
+    ("pretrain=3", "pretrain=3: the memory has no demonstrations to learn from"),
+    ("resume=nowhere", "resume=nowhere: no run folder there"),
+]
+OTHERS = [  # command and its arguments, words of the line
+    ("evaluate", "run, policy: give one of them"),
+    ("evaluate {trained}", "trained: write run=/"),
+    ("evaluate run = {trained}", "run: write run="),
+    ("evaluate run=nowhere", "run=nowhere: no run folder there"),
+    ("evaluate run={begun}", "holds no checkpoint yet"),
+    ("evaluate policy=cheetah", "policy=cheetah: no such file; choose a file, or one of "),
+    ("evaluate run=nowhere mode=both", "mode=both: choose one of full, policy, planner"),
+    ("evaluate run={trained} mode=planner", "mode=planner: the run has full, policy"),
+    ("evaluate run={trained} episodes=2.5", f"episodes=2.5: {COUNT}"),
+    (
+        "evaluate run={trained} env.gravity=1",
+        "Pendulum.__init__() got an unexpected keyword argument 'gravity'",
+    ),
+    ("evaluate policy=cartpole env.reward=up", "env.reward=up: choose one of cos"),
+    ("demonstrate", "task, run: give one of them"),
+    ("demonstrate task=hopper", "task=hopper: has no scripted expert; give expert=babble or run"),
+    ("render run={trained} out=film.avi", "out=film.avi: must end in .mp4, .gif, .png"),
+    ("render task=panda_stack out=/dev/null/a.mp4", "a.mp4: there is no folder /dev/null"),
+    ("render run={trained} mode=training", "learns no belief over two coordinates, which"),
+    ("figures runs=nowhere/*", "runs=nowhere/*: no run there"),
+    ("figures {trained}", 'unknown argument; quote the pattern: runs="GLOB"'),
+    ("figures rums={trained}", "threshold, others (did you mean runs?)"),
+    ("list config_dir=nowhere", "config_dir=nowhere: no such folder"),
+]
+RESUMED = [  # overrides given with resume, words of the line
+    ("algo=nn_mppi", "algo=nn_mppi: with resume only total_steps and precision"),
+    ("policy.hidden=[8,8]", "policy.hidden=[8,8]: with resume only total_steps and precision"),
+    ("total_steps=100", "has 600; it can be raised, not lowered"),
+    ("precision=half", "hybrid_rl: precision=half: choose one of auto, mixed, bf16"),
+    ("total_steps=3000000000", "total_steps=3000000000: must be a whole number, from 1 to 21474"),
 ]
 
 
@@ -253,6 +150,73 @@ def test_train_refuses(tmp_path, monkeypatch, capfd, given, words):
     assert call_train("task=pendulum", "algo=hybrid_stochastic", *given.split()) == 2
     assert words in only_line(capfd)
     assert contents(tmp_path) == {}
+
+
+@pytest.fixture(scope="module")
+def folders(tmp_path_factory):
+    """A run that is done, and one that never reached a checkpoint."""
+    folder = tmp_path_factory.mktemp("folders")
+    run(folder / "trained", "algo=sac")
+    (folder / "begun").mkdir()
+    shutil.copy(folder / "trained" / "config.yaml", folder / "begun")
+    return {"trained": folder / "trained", "begun": folder / "begun"}
+
+
+@pytest.fixture
+def nothing_lost(folders, tmp_path, monkeypatch):
+    """No file is made, changed or gone."""
+    monkeypatch.chdir(tmp_path)
+    folder = folders["trained"].parent
+    before = contents(folder)
+    yield
+    assert contents(folder) == before
+    assert contents(tmp_path) == {}
+
+
+@pytest.mark.parametrize(("given", "words"), OTHERS, ids=[given for given, _ in OTHERS])
+def test_the_other_commands_refuse(nothing_lost, folders, monkeypatch, capfd, given, words):
+    monkeypatch.setattr(offscreen, "backend", lambda: "egl")
+    name, *arguments = given.format(**folders).split()
+    assert call(lambda: command.run(MAINS[name]), *arguments) == 2
+    out, err = capfd.readouterr()
+    assert (out, err.count("\n")) == ("", 1)  # nothing was compiled before
+    assert words in err
+
+
+@pytest.mark.parametrize(("given", "words"), RESUMED, ids=[given for given, _ in RESUMED])
+def test_resume_refuses_other_settings(nothing_lost, folders, capfd, given, words):
+    assert call_train(f"resume={folders['trained']}", given) == 2
+    assert words in only_line(capfd)
+
+
+def test_a_run_without_a_checkpoint_is_not_resumed_and_none_is_written_over(
+    nothing_lost, folders, capfd
+):
+    for line, words in (
+        ([f"resume={folders['begun']}"], "holds no checkpoint yet"),
+        ([*TINY, f"run_dir={folders['trained']}"], "holds a run already; choose another, or res"),
+        ([*TINY, f"run_dir={folders['begun']}"], "holds a run without a checkpoint; delete it, or"),
+    ):
+        assert call_train(*line) == 2
+        assert words in only_line(capfd)
+
+
+@pytest.mark.parametrize("line", ["train num_envs=2.5", "evaluate run=nowhere"])
+def test_a_process_says_one_line(nothing_lost, line):
+    name, *arguments = line.split()
+    whole = [sys.executable, "-m", f"hybrid_rl.{name}", *arguments]
+    done = subprocess.run(whole, capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith(f"hybrid_rl: {arguments[0]}: ")
+    assert done.stderr.count("\n") == 1
+
+
+def test_render_says_what_to_install(nothing_lost, folders, monkeypatch, capfd):
+    monkeypatch.setattr(offscreen, "TRIAL", "raise SystemExit(1)")
+    monkeypatch.setattr(sys, "platform", "linux")
+    offscreen.chosen.cache_clear()
+    assert call(lambda: command.run(render.main), f"run={folders['trained']}") == 1
+    assert "install libegl1 or libosmesa6" in only_line(capfd)
 
 
 @pytest.mark.parametrize("value", [0, 2.5, "many"])
@@ -266,17 +230,20 @@ def test_counts_are_whole_numbers(value):
             config.build(changed)
 
 
-def test_memory_that_runs_out_is_one_line(capfd):
-    """Where XLA itself finds out."""
-    out = RuntimeError("RESOURCE_EXHAUSTED: Out of memory allocating 12 bytes.\nand more")
+def failing(error):
+    """A command that raises an error."""
 
     def fail():
-        raise out
+        raise error
 
-    assert call(lambda: command.run(fail)) == 1
-    printed = capfd.readouterr().err
-    assert printed.count("\n") == 1
-    assert "allocating 12 bytes.; fewer num_seeds or num_envs" in printed
+    return call(lambda: command.run(fail))
+
+
+def test_memory_that_runs_out_is_one_line(capfd):
+    """Where XLA itself finds out."""
+    text = "RESOURCE_EXHAUSTED: Out of memory allocating 12 bytes.\nand more"
+    assert failing(RuntimeError(text)) == 1
+    assert "allocating 12 bytes.; fewer num_seeds or num_envs" in only_line(capfd)
 
 
 def test_an_error_in_the_code_of_a_user_is_one_line_that_names_it(tmp_path, monkeypatch, capfd):
@@ -300,7 +267,6 @@ def test_a_fault_of_ours_is_a_traceback_without_frames_of_hydra(tmp_path, monkey
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        (["task=pendulm"], "task=pendulm: unknown; choose one of ant, .*; did you mean pendulum?"),
         ("task=ant seed=1", r"\"task=ant seed=1\": give a list, \['task=ant', 'seed=1'\]"),
         (["sed=3"], "sed: hybrid_stochastic has no such key; did you mean seed?"),
     ],
@@ -313,14 +279,14 @@ def test_python_has_the_line_of_the_command(given, words):
 def test_devices_that_are_not_there_are_one_line(monkeypatch, capfd):
     """JAX says "assert _default_backend is not None" for cuda, and another traceback for tpu."""
 
-    def fail():
+    def no_devices():
         raise AssertionError
 
     monkeypatch.setenv("JAX_PLATFORMS", "cuda")
-    assert call(lambda: command.run(fail)) == 1  # of something else: JAX has the devices
+    assert failing(AssertionError()) == 1  # of something else: JAX has the devices
     assert only_line(capfd).endswith(": AssertionError\n")
-    monkeypatch.setattr(jax, "devices", fail)
-    assert call(lambda: command.run(fail)) == 2
+    monkeypatch.setattr(jax, "devices", no_devices)
+    assert failing(AssertionError()) == 2
     assert only_line(capfd) == (
         "hybrid_rl: JAX_PLATFORMS=cuda: JAX finds no such device here; unset it, or choose cpu\n"
     )

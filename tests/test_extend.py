@@ -16,6 +16,7 @@ from tiny import TINY, call, call_train, only_line, summary_of
 
 import hybrid_rl
 from hybrid_rl import evaluate, render
+from hybrid_rl.analysis import film
 from hybrid_rl.cli import command
 from hybrid_rl.envs import check
 from hybrid_rl.envs.adapters.external import External
@@ -167,11 +168,11 @@ def test_a_mujoco_environment_is_two_files_and_one_yaml(conf, tmp_path, capfd, c
     assert capfd.readouterr().err == ""
     trained = load(tmp_path / "run")
     assert (evaluate.evaluate(trained, episodes=1)["return"] < 0).all()
-    film = render.episode(trained, steps=3)
-    assert film.poses.shape == (4, 2)
+    shown = film.episode(trained, steps=3)
+    assert shown.poses.shape == (4, 2)
     if can_draw:
         picture = tmp_path / "crane.gif"
-        render.draw_film(trained.episode, film, picture, 64, 48)
+        film.draw_film(trained.episode, shown, picture, 64, 48)
         assert picture.stat().st_size > 0
 
 

@@ -119,8 +119,7 @@ def test_a_run_names_the_shortest_key_of_the_field():
 @pytest.mark.parametrize(
     ("given", "line"),
     [
-        ("reward=[1]", "reward=[1]: choose one of aim, "),
-        ("num_envs=1000000000000", "num_envs=1000000000000: must be at most 2147483647"),
+        ("num_envs=1000000000000", "must be a whole number, from 1 to 2147483647"),
         ("random_steps=1000000000000", "random_steps=1000000000000: must be at most 1073741824"),
         ("random_steps=true", "random_steps=true: must be a whole number, 0 or more"),
         ("episode.steps=1000000000000", "episode.steps=1000000000000: must be at most 1073741824"),
@@ -148,7 +147,6 @@ def test_a_run_names_the_shortest_key_of_the_field():
             "EnsembleQ has no in_batch, which FlashSAC.critic needs; write def",
         ),
         ("task=quadcopter env.asset=x", "env.asset=x: no model "),
-        ("algo=localisation", "task=pendulum: has no env.acceleration, which localisation"),
         ("algo=analytic model=sines", "model=Gaussian: AnalyticGradient learns with it, and no le"),
     ],
 )

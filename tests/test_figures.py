@@ -5,7 +5,7 @@ import sys
 
 import pytest
 from matplotlib.figure import Figure
-from tiny import call
+from tiny import call, contents
 
 from hybrid_rl import figures
 from hybrid_rl.cli import command
@@ -44,7 +44,6 @@ def toy(tmp_path, monkeypatch):
     folder = tmp_path / "more"
     folder.mkdir()
     (folder / "toy.py").write_text(TOY)
-    (folder / "broken.py").write_text("1 / 0\n")
     (folder / "library.py").write_text('"""No study."""\n\n\ndef line():\n    return []\n')
     monkeypatch.syspath_prepend(folder)
     yield
@@ -156,36 +155,27 @@ def test_learning_curves_are_the_default(tmp_path, capsys):
         (["runs=RUNS", "metric=x/y"], "metric=x/y: not in these runs; they have train/return"),
         (["runs=RUNS", "x=hours"], "x=hours: not in "),
         (["runs=RUNS", "out=a.jpg"], "out=a.jpg: must end in .png, .pdf, .svg, .csv"),
-        (["runs=RUNS", "smooth=much"], "smooth=much: must be a number"),
         (["runs=RUNS", "threshold=high"], "threshold=high: must be a number in the metric's unit"),
-        (["runs=RUNS", "colour=red"], "colour=red: unknown argument"),
         (["runs=RUNS", "view=cost"], "give key=value with study, out, from, runs, metric, x"),
-        (["out=a.png"], "runs: not given"),
         (["from=nowhere.json"], "from=nowhere.json: cannot be read (No such file or directory)"),
         (["from=RUNS/../numbers.json"], "numbers.json: has no numbers of this study"),
         (["study=toy", "from=a.json"], "from=a.json: unknown argument; give key=value with study"),
-        (["study=toys", "--help"], "study=toys: unknown; choose one of active_learning, "),
-        (["study=toys"], "tuning, or a module of yours"),
         (["study=koopmann"], "or a module of yours (did you mean koopman?)"),
         (["study=library"], "library.py has no functions figure and summary"),
-        (["study=broken"], "broken.py:1: ZeroDivisionError"),
-        (["study=curves"], "study=curves: unknown"),
-        (["study=toy", "runs=RUNS"], "give key=value with study, out, title, points"),
+        (["study=curves"], "study=curves: unknown; choose one of active_learning, "),
         (["study=toy", "title=x", "points=1"], "points=1: must be a whole number, 2 or more"),
         (["study=toy"], "title: not given"),
         (["study=ergodic_coverage", "view=none"], "view=none: choose one of control, average"),
-        (["study=bayesian_optimisation", "runs=nowhere/*"], "runs=nowhere/*: no run there"),
-        (["study=model_learning", "runs=nowhere/*"], "runs=nowhere/*: no run there"),
     ],
 )
 def test_bad_usage_is_one_line_and_code_2(toy, tmp_path, monkeypatch, capsys, arguments, line):
     folder = runs(tmp_path / "runs")
     (tmp_path / "numbers.json").write_text('{"view": "falls"}')
     monkeypatch.chdir(tmp_path)
-    before = sorted(path.name for path in tmp_path.iterdir())
+    before = contents(tmp_path)
     assert draw(*(text.replace("RUNS", str(folder)) for text in arguments)) == 2
     printed = capsys.readouterr()
     assert printed.out == ""
     assert printed.err.count("\n") == 1
     assert line in printed.err
-    assert sorted(path.name for path in tmp_path.iterdir()) == before
+    assert contents(tmp_path) == before

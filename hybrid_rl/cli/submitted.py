@@ -11,7 +11,6 @@ from hydra.core.singleton import Singleton
 
 from hybrid_rl.cli import interrupt
 from hybrid_rl.errors import UsageError, relative
-from hybrid_rl.settings.compose import SLURM
 
 Result = dict[str, Any]  # of a job: code, line
 POLL = 0.5  # [s] between two checks of the jobs
@@ -20,11 +19,9 @@ PATIENCE = 60.0  # [s] for the jobs to end, once the sweep is interrupted
 
 def require_slurm(launcher: str) -> None:
     """Raise UsageError for a launcher that needs Slurm's commands where there are none."""
-    if launcher == SLURM and not (shutil.which("sbatch") and shutil.which("srun")):
-        raise UsageError(
-            f"hydra/launcher={SLURM}: no sbatch and srun here; start it where Slurm is, "
-            "or try hydra/launcher=submitit_local"
-        )
+    if launcher == "submitit_slurm" and not shutil.which("srun"):
+        line = "no srun here; start it where Slurm is, or try hydra/launcher=submitit_local"
+        raise UsageError(f"hydra/launcher={launcher}: {line}")
 
 
 def launch(
@@ -36,17 +33,16 @@ def launch(
     """
     from submitit.core.utils import FailedJobError
 
-    executor = _executor(launcher.params, launcher._EXECUTOR)
     numbers, state = range(first, first + len(jobs)), Singleton.get_state()
     calls = [
         (job, "hydra.sweep.dir", n, f"{n}", state) for n, job in zip(numbers, jobs, strict=True)
     ]
     try:
+        executor = _executor(launcher.params, launcher._EXECUTOR)
         sent = executor.map_array(launcher, *zip(*calls, strict=True))
     except FailedJobError as error:
-        reason = str(error).strip().replace("\n", "; ")
-        key = f"hydra/launcher=submitit_{executor.cluster}"
-        raise UsageError(f"{key}: the jobs could not be sent: {reason}") from error
+        key = f"hydra/launcher=submitit_{launcher._EXECUTOR}"
+        raise UsageError(f"{key}: the jobs could not be sent: {error}") from error
     running = dict(zip(numbers, sent, strict=True))
     for number, job in running.items():
         print(f"job {number} sent: {executor.cluster} {job.job_id}", flush=True)

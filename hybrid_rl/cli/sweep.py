@@ -21,24 +21,25 @@ from hydra.errors import HydraException
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
-from hybrid_rl.cli import command, hydra_line
+from hybrid_rl.cli import command
 from hybrid_rl.cli.combinations import jobs_of, labels
 from hybrid_rl.cli.submitted import Result, launch, require_slurm
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import members as program
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.files.integrity import write_text
-from hybrid_rl.run.folder import NO_CHECKPOINT, members, new_folder, rowless
+from hybrid_rl.run.folder import members, new_folder
 from hybrid_rl.run.machine import distributed
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.run.start import build_new_run
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings import words
 from hybrid_rl.settings.complete import refusal
-from hybrid_rl.settings.compose import concerns, explain
+from hybrid_rl.settings.compose import explain
 from hybrid_rl.settings.values import check
-from hybrid_rl.settings.words import forced, of_job, parse, quoted, raw_values, typed
+from hybrid_rl.settings.words import forced, parse, quoted, raw_values, typed
 
+WHOLE = ("task", "algo", "settings", "experiment", "learning")  # choices that are no parts
 ACCELERATED = ("auto", "mjx", "warp")  # physics that may need a GPU to build a world
 
 
@@ -53,14 +54,13 @@ class Task:
     def __call__(self, config: DictConfig) -> Result:
         """Run one job."""
         hydra = HydraConfig.get()
-        number, texts = int(hydra.job.num), of_job(hydra)
+        number = int(hydra.job.num)
         name = f"{self.called} {number}"
         print(f"{name}: {self.labels[number]}", flush=True)
         result: Result = {"code": 0, "line": "done"}
         self.results[number] = result
         try:
-            with hydra_line.as_typed(texts):
-                result |= _outcome(self.job(config))
+            result |= _outcome(self.job(config))
         except (SystemExit, KeyboardInterrupt) as end:
             code = end.code if isinstance(end, SystemExit) else 130
             result |= {"code": code, "line": "stopped"}
@@ -111,14 +111,11 @@ class Sweeper:
         fit, notes = self._fitting(jobs)
         jobs, configs = [*fit], [*fit.values()]
         self.task.labels = labels(jobs)
-        jobs = _folders(jobs, self._checked(jobs, configs))
+        self._check(jobs, configs)
         print(*notes, sep="", end="", flush=True)
         folder = Path(str(self.config.hydra.sweep.dir))
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            line = f"hydra.sweep.dir={folder}: cannot be written to ({error.strerror})"
-            raise UsageError(line) from error
+        folder.mkdir(parents=True, exist_ok=True)
+        jobs = _folders(jobs, configs)
         write_text(folder / "multirun.yaml", OmegaConf.to_yaml(self.config))
         print(f"sweep of {len(jobs)} jobs: {folder}", flush=True)
         results, size = self.task.results, self.max_batch_size or len(jobs)
@@ -145,35 +142,47 @@ class Sweeper:
     ) -> tuple[dict[tuple[str, ...], DictConfig], list[str]]:
         """The jobs without overrides of what only other jobs have, and lines about these.
 
-        Jobs that are the same then are one. With each its configuration and Hydra's own.
+        Jobs that are the same then are one. With each what its run reads.
         """
-        lost: dict[str, list[tuple[str, Any]]] = {}  # key and configuration, or key and error
-
-        def fitting(number: int, job: Sequence[str]) -> tuple[tuple[str, ...], DictConfig]:
+        lost: dict[str, UsageError] = {}  # override -> why some job cannot have it
+        unread: dict[str, list[tuple[str, Any]]] = {}  # override -> keys and values of such jobs
+        fit = {}
+        for number, job in enumerate(jobs):
             try:
                 config = self._composed(number, job)
-                raw, unread = configuration.read(config)
-                absent = {text: (path, raw_values(raw)) for path, text in unread.items()}
-            except UsageError as error:  # a choice that the method does not have
-                absent = {text: ("", error) for text in job if concerns(error.__cause__, text)}
+            except UsageError:
+                absent = self._absent(number, job)
                 if not absent:
                     raise
-            if not absent:
-                return tuple(job), config
-            for text, why in absent.items():
-                lost.setdefault(text, []).append(why)
-            return fitting(number, [text for text in job if text not in absent])
-
-        fit = dict(fitting(number, job) for number, job in enumerate(jobs))
+                job, lost = [text for text in job if text not in absent], {**absent, **lost}
+                config = self._composed(number, job)
+            config, keys = configuration.read(config)
+            for path, text in keys.items():
+                unread.setdefault(text, []).append((path, raw_values(config)))
+            fit[tuple(text for text in job if text not in keys.values())] = config
         notes = []
-        for text, reasons in lost.items():
+        for text in (*lost, *unread):
             those = [str(number) for number, job in enumerate(fit) if text in job]
-            if not those and reasons[0][0]:
-                raise UsageError(refusal(reasons[0][0], [raw for path, raw in reasons if path]))
+            if not those and text in lost:
+                raise lost[text]
             if not those:
-                raise reasons[0][1]
+                raise UsageError(refusal(unread[text][0][0], [raw for _, raw in unread[text]]))
             notes.append(f"{text}: for job {', '.join(those)} alone; the others have no such key\n")
         return fit, notes
+
+    def _absent(self, number: int, job: Sequence[str]) -> dict[str, UsageError]:
+        """The choices of parts that the method of a job does not have, with their errors."""
+        forced = self._forced(job)
+        choices = [text for text, own in zip(job, forced, strict=True) if text == own]
+        choices = [text for text in choices if words.name(text) not in WHOLE]
+        kept, absent = [text for text in job if text not in choices], {}
+        for text in choices:
+            try:
+                self._composed(number, [*kept, text])
+                kept.append(text)
+            except UsageError as error:
+                absent[text] = error
+        return absent
 
     def _forced(self, job: Sequence[str]) -> list[str]:
         """The overrides of a job as Hydra takes them."""
@@ -189,25 +198,24 @@ class Sweeper:
         except HydraException as error:
             raise UsageError(f"{explain(error)} ({self._called(number)})") from error
 
-    def _checked(
-        self, jobs: Sequence[Sequence[str]], configs: list[DictConfig]
-    ) -> list[DictConfig]:
-        """The configurations without Hydra's own, after all checks that need no compilation.
+    def _read(self, jobs: Sequence[Sequence[str]]) -> Sequence[DictConfig]:
+        """What the runs of the jobs read, of which none is without a part of the others."""
+        return configuration.read_only([self._composed(*job) for job in enumerate(jobs)])
+
+    def _check(self, jobs: Sequence[Sequence[str]], configs: Sequence[DictConfig]) -> None:
+        """All checks that need no compilation.
 
         Jobs that run elsewhere are built with the physics that needs no GPU here.
         """
-        configs = configuration.read_only(configs)
         for number, (overrides, config) in enumerate(zip(jobs, configs, strict=True)):
             if not here(self.config.hydra) and config.physics in ACCELERATED:
                 config = config.copy()
                 config.physics = "native"
             try:
-                with hydra_line.as_typed(overrides):
-                    _check(program.expand_sweep(config, overrides), here(self.config.hydra))
+                _check(program.expand_sweep(config, overrides), here(self.config.hydra))
             except (UsageError, OmegaConfBaseException) as error:
                 line = error if isinstance(error, UsageError) else explain(error)
                 raise UsageError(f"{line} ({self._called(number)})") from error
-        return configs
 
     def _called(self, number: int) -> str:
         """What messages call a job."""
@@ -250,12 +258,8 @@ def _folders(jobs: Sequence[Sequence[str]], configs: Sequence[DictConfig]) -> li
         else:
             same = given.count(config.run_dir) > 1
             folder = Path(str(config.run_dir), str(number) if same else "")
-        if any(checkpoint.steps(each / "checkpoints") for each in members(folder) or [folder]):
-            complete.append([*mine, f"resume={quoted(str(folder))}"])
-            continue
-        if (folder / "config.yaml").exists() and not rowless(folder):
-            raise UsageError(f"run_dir={folder}: {NO_CHECKPOINT}")
-        complete.append([*mine, f"run_dir={quoted(str(folder))}"])
+        begun = any(checkpoint.steps(run / "checkpoints") for run in members(folder) or [folder])
+        complete.append([*mine, f"{'resume' if begun else 'run_dir'}={quoted(str(folder))}"])
     return complete
 
 

@@ -15,13 +15,13 @@ MODULE:NAME that the user types, or gives from Python, may be any. `imported` al
 import ast
 import re
 from collections.abc import Collection, Iterator
-from dataclasses import fields, is_dataclass
+from dataclasses import is_dataclass
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from hybrid_rl.errors import FAULTS, UsageError, printable, relative, user_line
-from hybrid_rl.fields import FieldError, choices, method_of
+from hybrid_rl.fields import FieldError
 from hybrid_rl.files import modules
 from hybrid_rl.files.modules import NONE, OTHER, PACKAGE
 
@@ -53,18 +53,6 @@ def leaves(node: Any, where: str = "") -> Iterator[tuple[str, Any]]:
 def targets(node: Any) -> Iterator[tuple[str, Any]]:
     """Every `_target_` in a tree."""
     return ((key, name) for key, name in leaves(node) if f".{key}".endswith(f".{TARGET}"))
-
-
-def asked(node: Any, of: str = "${env}") -> set[str]:
-    """The methods that this package's parts in a tree need of `of`, which their fields refer to."""
-    found = set()
-    for value in node.values() if isinstance(node, dict) else node:
-        found |= asked(value, of) if isinstance(value, (dict, list)) else set()
-    if isinstance(node, dict) and str(node.get(TARGET)).startswith(OURS):
-        for field in fields(part_class(node[TARGET])):
-            if node.get(field.name) == of:
-                found |= {*map(method_of, choices(field.type))}
-    return found - {""}
 
 
 def check(node: Any, near: Path | None = None) -> None:
@@ -131,10 +119,11 @@ def _made(node: Any, near: Path | None, where: str) -> Any:
         return kind(**fields)
     except FieldError as error:
         raise (error.at(where) if where else error) from None
+    except ValueError:
+        raise
     except FAULTS as error:  # such as a field that it does not have
-        if isinstance(error, ValueError):
-            raise
-        raise ValueError(user_line(error) or str(error)) from error
+        line = user_line(error) or (f"{where}: {error}" if where else str(error))
+        raise ValueError(line) from error
 
 
 def _source(target: Any, near: Path | None) -> Path:

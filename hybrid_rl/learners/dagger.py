@@ -10,7 +10,7 @@ Each decision, at the robot's state x:
     DAIL       target: information          oracle     the clone's true error
 
 Source: thesis Algorithm 5 (DAIL) and, with `better` and `length`, Algorithm 12; Ross, Gordon and
-Bagnell 2011 (DAgger). The teacher drives for the `first` decisions (conf/controller/taught.yaml);
+Bagnell 2011 (DAgger). The teacher drives for the `first` decisions (conf/algo/dagger.yaml);
 they are the first demonstration, on which `first_steps` Adam steps are taken at its end.
 """
 

@@ -44,7 +44,7 @@ from hybrid_rl.protocols.contract import has_users
 from hybrid_rl.run.saved import Trained, load_named
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings.complete import LACKING, complete, refusal, select
-from hybrid_rl.settings.compose import check_choices, explain
+from hybrid_rl.settings.compose import explain
 from hybrid_rl.settings.groups import CONF, search_path
 from hybrid_rl.settings.words import forced, raw_values, value_of
 from hybrid_rl.training.agent import Agent
@@ -152,7 +152,7 @@ def _adjusted(trained: Trained, config: Any, overrides: Sequence[str]) -> Traine
     try:
         episode, controllers, _ = configuration.acting(config)
     except UsageError as error:
-        raise UsageError(str(error).replace("controllers.full.", "planner.", 1)) from error
+        raise UsageError(str(error).replace("controllers.full", "planner", 1)) from error
     return replace(trained, controllers=_greedy(trained, episode, controllers), config=config)
 
 
@@ -227,7 +227,6 @@ def _composed(overrides: Sequence[str], config_dir: str | Path | None) -> DictCo
     words = [f"controller@{text}" if text.split("=")[0] in PLANNERS else text for text in overrides]
     words += [search_path(config_dir)] if config_dir else []
     try:
-        check_choices(words)
         with configuration.COMPOSING, initialize_config_dir(str(CONF), version_base="1.3"):
             found: Any = compose("retarget", forced(words, {*GROUPS, "controller"}))
     except (HydraException, OmegaConfBaseException, UsageError) as error:

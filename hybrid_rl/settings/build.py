@@ -25,13 +25,11 @@ from hybrid_rl.settings import words as overriding
 from hybrid_rl.settings.complete import LACKING, complete, refusal, select
 from hybrid_rl.settings.compose import (
     UNCOMPOSED,
-    check_choices,
     check_keys,
-    check_task,
+    complete_names,
     explain,
     keys_of,
     settings_keys,
-    tasks_with,
 )
 from hybrid_rl.settings.groups import CONF, groups, search_path
 from hybrid_rl.settings.registry import register
@@ -85,7 +83,6 @@ def compose_raw(overrides: Sequence[str], config_dir: str | Path | None = None) 
         pairs = {} if isinstance(overrides, str) else overrides
         words = [f"{key}={value}" for key, value in pairs.items()] or str(overrides).split()
         raise UsageError(f'"{overrides}": give a list, {words}')
-    check_choices(overrides)
     more = [] if config_dir is None else [search_path(config_dir)]
     words = overriding.forced(overrides, groups(config_dir))
     try:
@@ -120,7 +117,7 @@ def read(config: DictConfig) -> tuple[DictConfig, dict[str, str]]:
     """Keys that the run of a job reads, and those that it does not: typed key -> words."""
     config = config.copy()
     hydra = take_hydra(config)
-    check_task(config, hydra)
+    complete_names(config, hydra)
     raw = overriding.raw_values(config)
     new = raw["resume"] is None
     typed = keys_of(overriding.of_job(hydra), hydra) if new else {}
@@ -275,30 +272,22 @@ def _usage(config: DictConfig, who: str | None = None) -> Iterator[None]:
     """
     try:
         yield
-    except ValueError as error:
-        if isinstance(error, PartError):  # names its file
-            raise
-        line = str(error)
-        if isinstance(error, FieldError) and error.line.startswith("world=") and error.lacks:
-            part = str(error).partition(".world=")[0]
-            who = part if part in PAID else who or config.get("algo") or "this"
-            line = f"task={config.task}: {who} {error.words}; choose one of "
-            line += ", ".join(tasks_with(error.lacks))
-            if not (mine := str(config.env.get("_target_"))).startswith("hybrid_rl."):
-                line += f", or give {mine} a method {error.lacks}, as hybrid_rl.protocols says"
-        field, equals, rest = line.partition("=")
-        if field in config.env and field not in config:  # of a world of the user's
-            line = f"env.{line}"
-        elif equals and "." in field:
-            line = f"{_shortest(config, field)}={rest}"
+    except PartError:  # names its file
+        raise
+    except FieldError as error:
+        part, _, field = error.path.rpartition(".")
+        error.path = f"{_shortest(config, part)}.{field}" if part else field
+        if not (field == "world" and error.lacks):
+            raise UsageError(error.line) from error
+        who = part if part in PAID else who or config.get("algo") or "this"
+        line = f"task={config.task}: {who} {error.must}; `python -m hybrid_rl.list` marks those"
         raise UsageError(line) from error
+    except ValueError as error:
+        raise UsageError(str(error)) from error
 
 
-def _shortest(config: DictConfig, key: str) -> str:
-    """The key of a field by the name of its part: policy_learner.tau for learners.policy.tau."""
-    where, _, field = key.rpartition(".")
+def _shortest(config: DictConfig, where: str) -> str:
+    """The key of a part by its name: policy_learner for learners.policy."""
     part: Any = OmegaConf.select(config, where)
-    if not isinstance(part, DictConfig):
-        return key
-    same = [name for name, node in config.items() if node == part]
-    return f"{same[0] if same else where}.{field}"
+    same = [name for name, node in config.items() if node == part and isinstance(part, DictConfig)]
+    return str(same[0]) if same else where

@@ -13,12 +13,13 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
 from hybrid_rl.errors import UsageError
-from hybrid_rl.files.targets import OURS, TARGET, part_class
+from hybrid_rl.files.targets import TARGET, part_class
 
 REFERENCE = re.compile(r"\$\{([\w.@]+)\}")  # an interpolation, which names a key
 INNER = re.compile(r"(?<=[\w.])\$\{([\w.]+)\}")  # within another one
 LACKING: Any = object()  # the value of a key that does not exist
 NAMES = {"world": "env"}  # field -> the key that it refers to, where its name is another
+CLASSES = {"episode": "hybrid_rl.training.episode.Episode"}  # of a section without a `_target_`
 CHOICES = ("settings", "experiment", "learning", "planner")  # groups without a key of their name
 THEIRS = {  # names of other libraries
     **{"gamma": "discount", "lr": "learning_rate", "buffer_size": "capacity"},
@@ -73,21 +74,21 @@ def _drop(raw: dict[str, Any], typed: Iterable[str]) -> None:
     for path in typed:
         above, _, name = source(raw, path).rpartition(".")
         node = select(raw, above) if above else raw
-        if isinstance(node, dict) and TARGET in node and name in node and name != TARGET:
+        if isinstance(node, dict) and name in node and name != TARGET:
             fields = _fields(node, above)
             if fields is not None and name not in fields:
                 del node[name]
 
 
 def _fields(node: dict[str, Any], path: str) -> Mapping[str, inspect.Parameter] | None:
-    """The fields of the class of a part; None if it takes any."""
-    try:
-        takes = inspect.signature(part_class(node[TARGET])).parameters
-    except ValueError as error:
-        raise UsageError(f"{path}.{TARGET}={node[TARGET]}: {error}") from error
-    if any(each.kind is each.VAR_KEYWORD for each in takes.values()):
+    """The fields of the class of a part; None if it is no part, or takes any."""
+    if (target := node.get(TARGET, CLASSES.get(path))) is None:
         return None
-    return takes
+    try:
+        takes = inspect.signature(part_class(target)).parameters
+    except ValueError as error:
+        raise UsageError(f"{path}.{TARGET}={target}: {error}") from error
+    return None if any(field.kind is field.VAR_KEYWORD for field in takes.values()) else takes
 
 
 def keys(raw: dict[str, Any], roots: Iterable[str] = ()) -> dict[str, Any]:
@@ -108,14 +109,8 @@ def _visit(
     read[path] = node
     if fill and isinstance(node, dict) and TARGET in node:
         _fill(raw, path, node)
-    items = (
-        node.items()
-        if isinstance(node, dict)
-        else enumerate(node)
-        if isinstance(node, list)
-        else ()
-    )
-    for name, value in items:
+    listed = dict(enumerate(node)) if isinstance(node, list) else node
+    for name, value in listed.items() if isinstance(listed, dict) else ():
         _visit(raw, f"{path}.{name}", value, read, fill)
     for target in _targets(raw, node) if isinstance(node, str) else ():
         at = source(raw, target)
@@ -135,16 +130,11 @@ def _targets(raw: dict[str, Any], text: str) -> list[str]:
 
 
 def _fill(raw: dict[str, Any], path: str, node: dict[str, Any]) -> None:
-    """Give a part the fields that it lacks; UsageError for one that its class does not have."""
+    """Give a part the fields that it lacks, in the order of its class."""
     fields = _fields(node, path)
     if fields is None:
         return
-    kind, given = str(node[TARGET]).rpartition(".")[2], dict(node)
-    theirs = not str(node[TARGET]).startswith(OURS)  # checked with the name of its file
-    unknown = [name for name in node if name not in fields and name != TARGET]
-    if unknown and not theirs:
-        key, has = f"{path}.{unknown[0]}", f"{kind} has {', '.join(fields) or 'no fields'}"
-        raise UsageError(f"{key}: {has}; leave it out by '~{key}', or take another part")
+    given = dict(node)
     node.clear()
     node[TARGET] = given.pop(TARGET)
     for name, field in fields.items():
@@ -155,8 +145,6 @@ def _fill(raw: dict[str, Any], path: str, node: dict[str, Any]) -> None:
             node |= {name: _listed(field.default)} if _plain(field.default) else {}
         elif link in raw and not f"{path}.".startswith(f"{link}."):
             node[name] = f"${{{link}}}"
-        elif not theirs:
-            raise UsageError(f"{path}.{name}: is missing; {kind} has no default for it")
     node |= given
 
 
@@ -189,14 +177,18 @@ def refusal(path: str, raws: Sequence[Mapping[str, Any]]) -> str:
     line = f"{path}: {', '.join(methods)} {'have' if methods[1:] else 'has'} no such key"
     above, _, last = path.rpartition(".")
     group = select(raw, above) if above else None
-    names = [key for key in group if key != TARGET] if isinstance(group, dict) else None
-    known = [key for key, value in keys(dict(raw)).items() if not REFERENCE.match(str(value))]
-    if names is not None and (near := nearest(last, names)):
-        return f"{line}; did you mean {above}.{near}?"
-    if names is not None and not any(key.endswith(f".{last}") for key in known):
-        return f"{line}; {above} has {', '.join(names) or 'no keys'}"
-    near = nearest(last, [*known, *CHOICES])
-    return f"{line}; {f'did you mean {near}?' if near else '`--cfg job` shows every key'}"
+    if isinstance(group, dict):
+        names = [key for key in group if key != TARGET]
+        known, hint = (
+            [f"{above}.{key}" for key in names],
+            f"{above} has {', '.join(names) or 'none'}",
+        )
+    else:
+        values = keys(dict(raw)).items()
+        known = [*(key for key, value in values if not REFERENCE.match(str(value))), *CHOICES]
+        hint = "`--cfg job` shows every key"
+    near = nearest(last, known)
+    return f"{line}; {f'did you mean {near}?' if near else hint}"
 
 
 def nearest(word: str, known: Iterable[str]) -> str:

@@ -1,7 +1,8 @@
 """Parts as choices of a group, without a YAML file: `critic=ensemble_q` is critics/ensemble_q.py.
 
-A module of a role's folder that defines one part is a choice by its name, unless conf/ has a file
-of that name. Modules are read as text, and imported when a part is made.
+A module of a role's folder is a choice by its name, unless conf/ has a file of that name; its part
+is the class that is called like the module, or the only one. Modules are read as text, and imported
+when a part is made.
 """
 
 import re
@@ -11,7 +12,13 @@ from pathlib import Path
 PACKAGE = Path(__file__).parents[1]
 ROLES = {  # group of conf/ -> folder of hybrid_rl
     **{"belief": "beliefs", "controller": "controllers", "critic": "critics"},
-    **{"features": "features", "learner": "learners", "map": "beliefs/maps", "model": "models"},
+    **{
+        "constraint": "constraints",
+        "features": "features",
+        "learner": "learners",
+        "map": "beliefs/maps",
+        "model": "models",
+    },
     **{"objective": "objectives", "policy": "policies", "proposal": "proposals"},
     **{"schedule": "schedules", "target": "targets"},
 }
@@ -32,14 +39,15 @@ def choices(conf: Path) -> dict[str, dict[str, str]]:
 
 
 def _of(folder: Path) -> dict[str, str]:
-    """The modules of a folder, and the folders in it, that define one part."""
+    """The modules of a folder, and the folders in it, that define a part."""
     found = {}
     for path in [*folder.glob("*.py"), *folder.glob("*/__init__.py")]:
         home = path.parent if path.name == "__init__.py" else path.with_suffix("")
         classes = PART.findall(path.read_text(encoding="utf-8"))
-        if home != folder and len(classes) == 1:
+        named = [name for name in classes if name.lower() == home.name.replace("_", "")]
+        if home != folder and (named or len(classes) == 1):
             module = ".".join(("hybrid_rl", *home.relative_to(PACKAGE).parts))
-            found[home.name] = f"{module}.{classes[0]}"
+            found[home.name] = f"{module}.{(named or classes)[0]}"
     return found
 
 

@@ -5,16 +5,12 @@ defaults of their classes. `settings.complete.refusal` is the line about a key t
 """
 
 import re
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable
 from typing import Any
 
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override, Quote, QuotedString
 from omegaconf import DictConfig, OmegaConf
-
-PLAIN = re.compile(r"(?s)(?:node `|override )([^`=]+).*(?:not a container|merge DictConfig)")
-TYPED = "key=value, text as 'key=\"TEXT\"'"
-SHOW = "`python -m hybrid_rl.train --cfg job` shows all of them"
 
 
 def parse(texts: Iterable[str]) -> list[Override]:
@@ -58,12 +54,21 @@ def is_group(text: str, groups: Collection[str]) -> bool:
 
 
 def forced(texts: Iterable[str], groups: Collection[str]) -> list[str]:
-    """The overrides as Hydra takes them: a value may have a key that no YAML file has."""
+    """The overrides as Hydra takes them.
 
-    def is_value(text: str) -> bool:  # no option and its word, and no key that is left out
-        return "=" in text and not text.startswith(("~", "-")) and not is_group(text, groups)
+    A value may have a key that no YAML file has; the choice of a group is a name, also `null`.
+    """
 
-    return [f"++{text.lstrip('+')}" if is_value(text) else text for text in texts]
+    def written(text: str) -> str:
+        if "=" not in text or text.startswith(("~", "-")):  # an option, or a key that is left out
+            return text
+        if name(text).startswith("hydra"):
+            return text
+        if is_group(text, groups):
+            return re.sub(r"=(null|true|false|[\d.]+)$", r'="\1"', text)
+        return f"++{text.lstrip('+')}"
+
+    return list(map(written, texts))
 
 
 def typed(texts: Iterable[str]) -> list[str]:
@@ -80,26 +85,6 @@ def raw_values(config: DictConfig) -> dict[str, Any]:
     """`config` with its interpolations as text."""
     raw: Any = OmegaConf.to_container(config, resolve=False)
     return {name: value for name, value in raw.items() if name != "hydra"}
-
-
-def as_typed(line: str, texts: Sequence[str]) -> str:
-    """A message that begins with FIELD=VALUE of a part, with the key and the value as typed.
-
-    A part names only its field: `reward='foo': ...` was typed as env.reward=foo. YAML reads 1e4 as
-    10000.0.
-    """
-    head = re.match(r"([\w.]+)=(.*?): ", line)
-    if head is None:
-        return line
-    value, values = value_of(head[2]), {str(value_of(head[2])), head[2].strip("'\"")}
-    for each in parse(texts):
-        path, text = key(each), each.get_value_element_as_str()
-        if each.is_delete() or path.rsplit(".", 1)[-1] != head[1].rsplit(".", 1)[-1]:
-            continue
-        written = (each.input_line or "").partition("=")[2] or text
-        if each.value() == value or {text.strip("'\""), str(each.value())} & values:
-            return f"{path}={written}: {line[head.end() :]}"
-    return line
 
 
 def value_of(text: str) -> Any:

@@ -78,8 +78,8 @@ def windowed(asked: str) -> bool:
 def film(policy: str, out: Path) -> str:
     """Write a video of a trained policy; a line about it, or why there is none."""
     from hybrid_rl.analysis.drawing import SUFFIXES
+    from hybrid_rl.analysis.film import draw_film, episode
     from hybrid_rl.envs.mujoco import offscreen
-    from hybrid_rl.render import draw_film, episode
     from hybrid_rl.run.saved import read as read_policy
 
     arguments.output("out", out, SUFFIXES)

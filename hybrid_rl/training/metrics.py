@@ -8,7 +8,7 @@ from hybrid_rl.types import EnvState
 
 def outcome(action: Array, now: EnvState) -> dict[str, Array]:
     """What a decision with action [E, m] led to: `world/...` [], and `episode/...` [E] so far."""
-    world = {"reward": now.reward, "obs": now.obs, "action": action, **now.metrics}
+    world = {**now.metrics, "reward": now.reward, "obs": now.obs, "action": action}
     return {
         **masked_mean({f"world/{name}": value for name, value in world.items()}, True),
         "episode/done": now.done,

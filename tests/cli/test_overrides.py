@@ -53,23 +53,6 @@ def test_a_part_has_the_fields_of_its_class_and_the_parts_of_their_names():
     raw = {"goal": part, "target": {}, "domain": {}, "policy": {}}
     goal = complete.complete(raw, ["goal"])["goal"]
     assert (goal["target"], goal["every"], goal["samples"]) == ("${target}", 3, 1000)
-    with pytest.raises(config.UsageError, match=r"goal\.evry: GoalController has target, "):
-        complete.complete({"goal": part | {"evry": 3}}, ["goal"])
-
-
-@pytest.mark.parametrize(
-    ("line", "typed", "shown"),
-    [
-        ("reward='foo': choose", "env.reward=foo", "env.reward=foo: choose"),
-        ("total_steps=10000.0: must", "total_steps=1e4", "total_steps=1e4: must"),
-        ("planner.rest=nan: must", "model_planner.rest=nan", "model_planner.rest=nan: must"),
-        ("planner.rest=2: must", "planner.rest=3", "planner.rest=2: must"),  # not the typed value
-        ("hidden=[0]: widths", "policy.hidden=[0]", "policy.hidden=[0]: widths"),
-        ("no key in this", "seed=3", "no key in this"),
-    ],
-)
-def test_a_message_shows_what_was_typed(line, typed, shown):
-    assert overrides.as_typed(line, [typed, "seed=0"]) == shown
 
 
 def test_python_refuses_what_the_command_refuses():

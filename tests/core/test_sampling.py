@@ -90,7 +90,7 @@ def test_effective_samples_range_from_one_to_the_number_of_samples() -> None:
 def test_plans_refuse_a_step_that_returns_no_state_like_x(module: Any) -> None:
     given = (jax.random.key(0),) if module is sampling else ()
     for bad in (lambda x, u: jnp.zeros(3), lambda x, u: (x, u)):
-        with pytest.raises(ValueError, match=r"where x is \[2\]"):
+        with pytest.raises(ValueError, match=r"where x is float32\[2\]"):
             module.plan(bad, lambda x, u, after: 0.0, jnp.zeros(2), jnp.zeros((3, 1)), *given)
 
 
@@ -99,22 +99,6 @@ def test_shift_drops_the_first_action() -> None:
     plan = jnp.arange(6.0).reshape(3, 2)
     np.testing.assert_array_equal(sampling.shift(plan), [[2, 3], [4, 5], [0, 0]])
     np.testing.assert_array_equal(sampling.shift(plan, 7.0), [[2, 3], [4, 5], [7, 7]])
-
-
-def test_plans_refuse_a_step_that_returns_no_state_like_x() -> None:
-    def plan(module: Any, x: Array, step: Any) -> None:
-        given = (jax.random.key(0),) if module is sampling else ()
-        module.plan(step, lambda x, u, after: after[0], x, jnp.zeros((3, 1)), *given)
-
-    for module in (sampling, adjoint):
-        for x, step, words in (
-            (jnp.zeros(2), lambda x, u: jnp.zeros(3), r"returns float32\[3\], where x is float"),
-            (jnp.zeros(2), lambda x, u: (x, u), "returns a tuple of 2, where x is"),
-            (jnp.zeros(2, int), lambda x, u: x + u[0], "float32.*, where x is int32"),
-        ):
-            with pytest.raises(ValueError, match=words):
-                plan(module, x, step)
-        plan(module, np.zeros(2), lambda x, u: x + u[0])  # float64, which JAX takes as float32
 
 
 def test_a_candidate_without_a_finite_return_has_no_weight() -> None:

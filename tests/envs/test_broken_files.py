@@ -24,21 +24,21 @@ FILES = [  # of Python and YAML: what is wrong, file, replaced, by what, the who
         "py",
         "@dataclass(frozen=True)\nclass W:\n    gain: float = 1.0",
         "class W:",
-        r"env\.gain: W in w\.py is no dataclass \(@dataclass\(frozen=True\)\), and has no fields",
+        r"env: W\(\) takes no arguments",
     ),
     (
         "an unknown field",
         "yaml",
         "gain:",
         "gian:",
-        r"env\.gian: W in w\.py has gain; did you mean gain\?",
+        r"env: W\.__init__\(\) got an unexpected keyword argument 'gian'",
     ),
     (
         "a field without a default",
         "py",
         "gain: float = 1.0",
         "gain: float\n    mass: float",
-        r"env\.mass: is missing; W in w\.py has no default for it",
+        r"env: W\.__init__\(\) missing 1 required positional argument: 'mass'",
     ),
     ("a colon, as in env.make", "yaml", "w.W", '"w:W"', r"env\._target_=w:W: write w\.W"),
     ("no such class", "yaml", "w.W", "w.V", r"env\._target_=w\.V: w\.py has no class V"),
@@ -70,14 +70,6 @@ FILES = [  # of Python and YAML: what is wrong, file, replaced, by what, the who
         "",
         r"my_conf/task/broken\.yaml: its first line must be # @package _global_",
     ),
-    (
-        "the name of another task",
-        "yaml",
-        "task: broken\n",
-        "defaults: [/task@_global_: pendulum, _self_]\n",
-        r"my_conf/task/broken\.yaml: lacks task: broken, the name of its runs",
-    ),
-    ("no task", "yaml", "task: broken\n", "", r"my_conf/task/broken\.yaml: lacks task; set .*"),
     (
         "no env",
         "yaml",
@@ -111,14 +103,14 @@ FILES = [  # of Python and YAML: what is wrong, file, replaced, by what, the who
         "yaml",
         "{steps:",
         "{step:",
-        r"my_conf/task/broken\.yaml: episode\.step: .*mean steps\?",
+        r"episode: got an unexpected keyword argument 'step'",
     ),
     (
         "no class of env",
         "yaml",
         "_target_: w.W, ",
         "",
-        r"my_conf/task/broken\.yaml: env lacks _target_; write .*",
+        r"env={'gain': 2\.0}: must be a part, a group of keys with _target_",
     ),
     (
         "an environment of Gymnasium",
@@ -141,14 +133,19 @@ def test_files_that_make_no_run_are_refused_in_a_line(folder, file, old, new, li
     refused(line, lambda: config.build(config.load(["task=broken", "algo=sac"], "my_conf")))
 
 
-def test_a_method_that_does_not_name_its_runs_is_refused(folder):
+def test_runs_of_a_task_or_a_method_without_a_name_have_that_of_its_file(folder):
     """They would lie among those of what it begins with, and share their curve."""
+    inherits = "defaults: [/task@_global_: pendulum, _self_]\n"
+    write(folder, task=changed(TASK, "task: broken\n", inherits))
+    assert config.load(["task=broken", "algo=sac"], "my_conf").task == "broken"
     (folder / "my_conf" / "algo").mkdir()
     method = "# @package _global_\ndefaults: [/algo@_global_: sac, _self_]\n"
     for text in (method, method.replace("algo@_global_: sac", "family@_global_: hybrid")):
         (folder / "my_conf" / "algo" / "own.yaml").write_text(text)
-        line = r"my_conf/algo/own\.yaml: lacks algo: own, the name of its runs"
-        refused(line, lambda: config.load(["task=pendulum", "algo=own"], "my_conf"))
+        if "family" in text:  # of which none says who acts
+            text += "controllers: {full: '${actor}'}\n"
+            (folder / "my_conf" / "algo" / "own.yaml").write_text(text)
+        assert config.load(["task=pendulum", "algo=own"], "my_conf").algo == "own"
 
 
 def test_a_method_that_loads_a_part_of_its_family_again_is_refused(folder):
@@ -156,7 +153,7 @@ def test_a_method_that_loads_a_part_of_its_family_again_is_refused(folder):
     twice = "[/family@_global_: hybrid, /controller@noisy: noisy, _self_]"
     text = f"# @package _global_\ndefaults: {twice}\nalgo: own\n"
     (folder / "my_conf" / "algo" / "own.yaml").write_text(text)
-    line = r"controller@noisy\.controller: is loaded twice; leave your line out, or .*"
+    line = r".*controller@noisy\.controller appears more than once.*"
     refused(line, lambda: config.load(["task=pendulum", "algo=own"], "my_conf"))
 
 

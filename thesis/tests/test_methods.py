@@ -106,7 +106,7 @@ def test_a_name_of_the_thesis_is_a_method_of_the_library_with_a_value(name: str)
 
 def methods_of(experiment: str) -> list[list[str]]:
     """The overrides for each method that an experiment compares; else for its own method."""
-    node = OmegaConf.load(config.CONF / "experiment" / f"{experiment}.yaml")
+    node = OmegaConf.load(file("experiment", experiment))
     inherited = {str(k): v for default in node.defaults for k, v in _pairs(default)}
     files = [node]
     if "/settings@_global_" in inherited:

@@ -145,16 +145,16 @@ def _videos(runs: Sequence[RunFolder], wanted: bool) -> str:
 
 def _drawn(folder: Path) -> dict[str, bytes]:
     """The beginning of the first evaluation episode of a run, with its caption."""
-    from hybrid_rl import load, render
-    from hybrid_rl.envs.mujoco import offscreen, scenery
+    from hybrid_rl import load
+    from hybrid_rl.analysis.film import draw_film, episode
+    from hybrid_rl.envs.mujoco import offscreen
 
     offscreen.backend()
     trained = load(folder)
-    scenery.check_drawable(trained.episode.env)
-    film = render.episode(trained, steps=min(SHOWN, trained.episode.steps))
+    film = episode(trained, steps=min(SHOWN, trained.episode.steps))
     with TemporaryDirectory() as parent:
         out = Path(parent, "video.mp4")
-        render.draw_film(trained.episode, film, out)
+        draw_film(trained.episode, film, out)
         caption = (
             f"after {trained.step:,} decisions of training: the first {len(film.poses) - 1} of "
             f"{trained.episode.steps:,} decisions of an episode, return so far {film.total:,.1f}"

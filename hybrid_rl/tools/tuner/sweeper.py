@@ -64,8 +64,9 @@ class Tuner(sweep.Sweeper):
         fixed, space = self._split(parsed)
         corners = _corners(fixed, space)
         self.task.labels = labels(corners)
-        composed = [self._composed(*each) for each in enumerate(corners)]
-        config = self._checked(corners, composed)[0]
+        configs = self._read(corners)
+        self._check(corners, configs)
+        config = configs[0]
         if not [mode for mode in config.eval_modes if mode in config.controllers]:
             raise UsageError("eval_modes=[]: a study needs evaluations")
         folder = Path(str(config.run_dir or self.config.hydra.sweep.dir))
