@@ -29,7 +29,7 @@ def test_what_is_paid_is_one_number(name, method):
         (lambda x, u, after: x[3], "index 3 is out of bounds"),
         (lambda x, u, after: (x[:, None] - after).sum(), "(3, 1) (3,)"),
         (lambda x, u, after: sys.exit(), "SystemExit"),
-        (lambda x, u: x[0], "(x, u)"),
+        (lambda x, u: x[0], "(self, x, u, after)"),
     ):
         with pytest.raises(ValueError, match=re.escape(words)) as error:
             Episode(Pendulum(), **{name: Mine(**{method: function})})
@@ -39,6 +39,6 @@ def test_what_is_paid_is_one_number(name, method):
 
 
 def test_a_method_that_is_not_there_is_named():
-    other: Any = Mine(reward_of=lambda x, u, after: x[0])
-    with pytest.raises(ValueError, match=r"Mine.* has no excess"):
+    other: Any = type("Priced", (), {"price": 0.0, "chance": None, "width": 1.0})()
+    with pytest.raises(ValueError, match=r"Priced.* has no excess"):
         Episode(Pendulum(), constraint=other)
