@@ -235,9 +235,9 @@ def test_a_return_that_is_not_finite_is_one_line_and_no_file(
     ("words", "line"),
     [
         ("reward=fame", "reward=fame: unknown; choose one of aim, height, level"),
-        ("reward.target=2", "reward.target: is a key of reward=NAME; give that with it"),
+        ("reward.target=2", "reward.target=2: is a key of reward=NAME; give that with it"),
         ("planner.samples=0", "planner.samples=0: must be a whole number, 1 or more"),
-        ("constraint.most=2", "constraint.most: is a key of constraint=NAME; give that with it"),
+        ("constraint.most=2", "constraint.most=2: is a key of constraint=NAME; give that with it"),
         ("episode.sensor_noise=a", "episode.sensor_noise=a: must be 0 or more"),
         ("reward=speed reward.tarket=2", "has no such key; did you mean reward.target?"),
         ("reward=speed reward.target=fast", "reward.target=fast: must be"),
@@ -259,7 +259,7 @@ def test_a_mistake_is_one_line(trained: Path, known: Trained, words, line, capfd
 def test_a_name_of_two_lines_is_one_line(capfd) -> None:
     given = ("policy=pendulum", "reward=speed\nx: 1")
     assert call(lambda: command.run(evaluate.main), *given) == 2
-    assert r"reward=speed x: 1: \n stands outside quotes" in only_line(capfd)
+    assert "reward=speed x: 1: cannot be read; write key=value" in only_line(capfd)
 
 
 @pytest.mark.parametrize("word", ["planner=gradient", "constraint=speed"])
