@@ -133,7 +133,7 @@ def test_a_run_plans_with_a_constraint_with_and_without_a_reward(trained, more) 
 @pytest.mark.parametrize(
     ("given", "line"),
     [
-        ("constraint=pace", "constraint=pace: unknown; choose one of height, limit, pitch, "),
+        ("constraint=pace", "constraint=pace: unknown; choose one of .*height, limit, pitch, "),
         ("constraint=pitch", "constraint.quantity=pitch: choose one of height, speed"),
         ("constraint=limit", "constraint.most=null: limits nothing; give most, least or both"),
         ("constraint=torque constraint.most=2", r"constraint.most=2: must lie in \(0, 1\]"),
