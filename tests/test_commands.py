@@ -157,7 +157,7 @@ def test_a_part_of_a_checkpoint_is_restored_alone(trained):
     """The memory of every decision, without what was learned from it; and the other way round."""
     made = build_run(run_folder.read(trained, "run"))
     step, state, notes = restore(trained, made, "memory")
-    assert (step, notes, state.memory.count.tolist()) == (600, (), [600])
+    assert (step, notes, state.memory.count.tolist()) == (600, [], [600])
     assert state.env is state.control is state.learners is state.key is None
     state = restore(trained, made)[1]
     assert state.memory is None

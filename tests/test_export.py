@@ -283,7 +283,7 @@ def test_a_state_of_several_types_comes_back():
         ),
         ("mode=both out=a.npz", "mode=both: the run has policy, full"),
         ("seed=5 out=a.npz", "seed=5: the run has 3, 4"),
-        ("platforms=gpu out=a.stablehlo", "platforms=gpu: unknown; choose from cpu, cuda"),
+        ("platforms=gpu out=a.stablehlo", "platforms=gpu: choose one of cpu, cuda"),
         ("out=mine.npz", "out=mine.npz: mine.py would be replaced; choose another name"),
         ("", "out: not given; give out=policy with .stablehlo, .npz, .onnx or .h"),
     ],

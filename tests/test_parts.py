@@ -52,7 +52,7 @@ FOLLOWED = {  # what is imported by a name that is no constant: judged, typed, o
     "hybrid_rl/tools/stand_in.py": {"kind.id"},
     "envs/mujoco/offscreen.py": {"f'mujoco.{name}'"},
     "hybrid_rl/__init__.py": {"f'hybrid_rl.{module}'"},
-    "hybrid_rl/figures.py": {"home", "module", "name"},
+    "hybrid_rl/analysis/studies.py": {"home", "module", "name"},
     "hybrid_rl/run/logs/loggers.py": {"name"},
 }
 

@@ -103,7 +103,7 @@ FILES = [  # of Python and YAML: what is wrong, file, replaced, by what, the who
         "yaml",
         "{steps:",
         "{step:",
-        r"episode: got an unexpected keyword argument 'step'",
+        r"episode: Episode\.__init__\(\) got an unexpected keyword argument 'step'",
     ),
     (
         "no class of env",
