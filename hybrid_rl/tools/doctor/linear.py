@@ -67,8 +67,8 @@ def better(run: Evidence) -> str | None:
     steps = max(run.run.agent.episode.steps // 4, 1)
     return (
         f"the best of {POLICIES} random linear policies returns {again.mean():.4g}, the learned "
-        f"one {own.mean():.4g}: it explores too little, and the decision may be too short "
-        f"({spec.dt:.3g} s); try episode.action_repeat=4 episode.steps={steps}, or more decisions"
+        f"one {own.mean():.4g}: it needs more decisions, or explores too little in decisions of "
+        f"{spec.dt:.3g} s; train longer, or try episode.action_repeat=4 episode.steps={steps}"
     )
 
 
