@@ -14,7 +14,6 @@ from gymnasium.utils.env_checker import check_env
 from omegaconf import OmegaConf
 from tiny import TINY, call, call_train, only_line, summary_of
 
-import hybrid_rl
 from hybrid_rl import evaluate, render
 from hybrid_rl.analysis import film
 from hybrid_rl.cli import command
@@ -97,8 +96,6 @@ def test_a_method_is_one_yaml_and_a_recursive_learner_one_file(conf, tmp_path, c
 def test_a_configuration_folder_that_does_not_exist_is_one_line():
     with pytest.raises(config.UsageError, match="config_dir=nowhere: no such folder"):
         config.load(config_dir="nowhere")
-    with pytest.raises(config.UsageError, match="config_dir goes with a list of overrides"):
-        hybrid_rl.train(config.load(["task=pendulum"]), config_dir="nowhere")
 
 
 def test_a_part_is_one_file_and_one_yaml(ring, tmp_path, capfd):
