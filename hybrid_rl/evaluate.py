@@ -120,7 +120,7 @@ def _words(changes: dict[str, str]) -> list[str]:
 
 
 def _policy_alone(trained: Trained, given: dict[str, Any]) -> str:
-    """The line with which a planner's return on a new goal is compared; "" if there is none."""
+    """The line that a planner's return on a new goal is compared with, or ""."""
     full, policy = trained.controllers.get("full"), trained.controllers.get("policy")
     new = any(given[argument.name] for argument in GOAL)
     if not new or given["mode"] != "full" or policy in (None, full):

@@ -98,7 +98,7 @@ class Robot(Made):
         return np.clip(2 * (given - low) / (high - low) - 1, -1, 1).astype(np.float32)
 
     def _numbers(self, name: str, axes: int) -> np.ndarray:
-        """A field of the class as finite numbers with so many axes; UsageError for others."""
+        """A field of the class as finite numbers with `axes` axes; UsageError for others."""
         value = getattr(self.kind, name)
         try:
             numbers = np.asarray(value, float)

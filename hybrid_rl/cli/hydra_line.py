@@ -112,7 +112,7 @@ def _sorted(line: Sequence[str]) -> tuple[list[str], list[str], list[str]]:
         if name in (*VALUED, *FOLDER) and (equals or name.startswith("-")):
             value = value if equals else next(texts, (at, ""))[1]
             if name in FOLDER:
-                search_path(value)  # refuses what is no folder
+                search_path(value)  # UsageError unless it is a folder
                 folders.append(value)
             else:
                 options.append(f"{name}={value}")

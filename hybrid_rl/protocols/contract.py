@@ -301,7 +301,7 @@ def check_indices(source: SourceOf, method: str, *examples: tuple[Any, ...]) -> 
 
 
 def _takes(method: Callable[..., Any], number: int) -> bool:
-    """Whether a method can be called with so many arguments; yes where Python does not know."""
+    """True if a method takes `number` arguments, or if Python does not know."""
     with suppress(ValueError):
         try:
             inspect.signature(method).bind(*range(number))

@@ -92,7 +92,7 @@ class OnlineLearner:
         self._start(0)
 
     def _start(self, decisions: int) -> None:
-        """Begin to learn after so many decisions, in a new episode."""
+        """Begin to learn after `decisions` decisions, in a new episode."""
         self.decisions = self._began = decisions
         self._learner.read = self._learner.learned = decisions
         self._pending: tuple[np.ndarray, np.ndarray] | None = None
