@@ -78,10 +78,11 @@ def _wait(jobs: dict[int, Any], results: dict[int, Result], most: float = math.i
         for number, job in jobs.items():
             if number in results:
                 continue
+            ended = job.done()  # asked first: a job that has ended has begun
             if number not in running and job.paths.stdout.exists():
                 running.add(number)
                 print(f"job {number} begins: log {relative(job.paths.stdout)}", flush=True)
-            if job.done():
+            if ended:
                 results[number] = _result(job)
                 print(f"job {number} ends: {results[number]['line']}", flush=True)
         time.sleep(POLL)
