@@ -1,4 +1,4 @@
-"""The sweepers of hybrid_rl, in the only package where Hydra searches for plugins.
+"""The sweeper of hybrid_rl, in the only package where Hydra searches for plugins.
 
 Every Hydra program on the machine imports this module, so the rest is imported when it is used.
 """
@@ -24,17 +24,3 @@ class CheckedSweeper(Sweeper):
     def sweep(self, arguments: list[str]) -> Any:
         """Run all jobs."""
         return self.sweeper.sweep(arguments)
-
-
-class TunedSweeper(CheckedSweeper):
-    """`hybrid_rl.tools.tuner.sweeper.Tuner`."""
-
-    def __init__(self, params: Any = None, **settings: Any) -> None:
-        self.given = (settings, params)
-
-    def setup(self, **given: Any) -> None:
-        """Hydra's: what to run, and by which launcher."""
-        from hybrid_rl.tools.tuner import sweeper
-
-        self.sweeper = sweeper.Tuner(*self.given)
-        self.sweeper.setup(**given)

@@ -27,7 +27,7 @@ from hybrid_rl.types import Spec
 PACKAGE = Path(__file__).resolve().parents[1] / "hybrid_rl"
 ROW = {"step": 5, "seed": 0, "wall_s": 1.0, "eval/return": -3.0}
 WRITERS = ("run/**/*.py", "training/*.py", "robot.py")
-WRITERS += ("outside/*.py", "tools/tuner/*.py", "cli/sweep.py", "files/atomic.py")
+WRITERS += ("outside/*.py", "cli/sweep.py", "files/atomic.py")
 OPENS = r".+\.(write_text|write_bytes|touch|mk\w*dirs?|mkfifo|copy2|copyfile)|(.*\.)?(open|fdopen)"
 OPENS += r"|(np|OmegaConf)\.save\w*"
 OPENED = {  # in what writes to run folders; the folder of a run itself is the user's, or new

@@ -20,7 +20,7 @@ PAGE = (ROOT / "docs/python.md").read_text(encoding="utf-8")
 TOOLS = ROOT / "hybrid_rl/tools"
 PRIVATE = {  # tool -> names that it imports and that are not public: take some away, add none
     **{"benchmark": 12, "demo": 8, "doctor": 15, "report": 16, "stand_in": 8},
-    **{"tuner": 15, "view": 25},
+    **{"view": 25},
 }
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 DPI, MOST_PIXELS = 200, 1600  # of a .png; across
-HOMES = ("hybrid_rl.analysis", "hybrid_rl.thesis.studies", "hybrid_rl.tools.tuner")  # of studies
+HOMES = ("hybrid_rl.analysis", "hybrid_rl.thesis.studies")  # of studies
 
 
 class Study(Protocol):
