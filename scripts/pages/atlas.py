@@ -89,20 +89,15 @@ def _cell(name: str, entry: dict[str, Any]) -> str:
     shown = f"[![{entry['title']}]({picture(entry)})]({entry['page']}) <br> "
     verdict = f"**{entry['verdict'].capitalize()}**"
     brief = f": {entry['brief']}" if "brief" in entry else ""
-    anchor = _anchor(f"{name}: {entry['title']}")
-    text = f"[{name}](#{anchor}). {entry['claim']} <br> {verdict}{brief}."
+    text = f"[{name}]({entry['page']}). {entry['claim']} <br> {verdict}{brief}."
     return (shown if picture(entry) else "") + text
 
 
 def entry_text(name: str, entry: dict[str, Any]) -> str:
-    """The part of the page about one figure or table."""
+    """What was found of one figure or table, from which numbers."""
     verdict, shows = entry["verdict"], filled(entry["shows"]).strip()
-    text = f"### {name}: {entry['title']}\n\n"
-    verdict = f"{verdict.capitalize()}{', with' if verdict == 'holds in part' else ':'}"
-    text += f"**{verdict}** {shows} [More]({entry['page']})\n"
-    if entry["results"]:
-        text += f"\nNumbers: {sources(entry)}.\n"
-    return text
+    text = f"* **{name}** {verdict}{', with' if verdict == 'holds in part' else ':'} {shows}"
+    return f"{text} ({sources(entry)})" if entry["results"] else text
 
 
 def page() -> str:
@@ -115,11 +110,6 @@ def page() -> str:
     )
     for title, chapter in chapters.items():
         parts = [entry_text(name, entry) for name, entry in chapter.items()]
-        details = [f"<details>\n<summary>{MORE}</summary>\n", *parts, "</details>\n"]
+        details = [f"<details>\n<summary>{MORE}</summary>\n", *parts, "\n</details>\n"]
         text += f"\n## {title}\n\n{gallery(chapter)}\n\n" + "\n".join(details)
     return text
-
-
-def _anchor(heading: str) -> str:
-    """What GitHub calls a heading in links."""
-    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
