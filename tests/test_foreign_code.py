@@ -169,7 +169,7 @@ def test_a_policy_has_no_interpolations(tmp_path, key):
 def test_every_command_refuses_it(folder, capfd, name):
     changed(folder, env=GETOUTPUT)
     before = contents(folder)
-    given = [f"run={folder}", *(["out=a.npz"] if name == "export" else [])]
+    given = [f"run={folder}", *(["out=a.stablehlo"] if name == "export" else [])]
     assert call(lambda: command.run(COMMANDS[name]), *given) == 2
     assert "env.make=subprocess:getoutput: is no part" in only_line(capfd)
     assert contents(folder) == before

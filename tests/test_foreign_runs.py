@@ -123,7 +123,7 @@ def test_it_is_refused_wherever_it_stands(folder, keys, at):
 def test_every_command_refuses_it(folder, capfd, name):
     changed(folder, extra=[{"_target_": "hybrid_rl.run.files.integrity.write_text", "path": "ran"}])
     before = contents(folder)
-    given = [f"run={folder}", *(["out=a.npz"] if name == "export" else [])]
+    given = [f"run={folder}", *(["out=a.stablehlo"] if name == "export" else [])]
     if name == "report":  # its page has the curves; only the film needs the parts
         assert call(lambda: command.run(report.main), *given) == 0
         assert "is no part of hybrid_rl" in (folder / "report.html").read_text()
