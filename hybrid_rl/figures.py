@@ -60,7 +60,7 @@ def main() -> None:
     of_all, again = (replace(ARGUMENTS[0], default=name), *ARGUMENTS[1:]), hasattr(study, "draw")
     if again and any(text.startswith("from=") for text in line):
         values, _ = read(doc, (*of_all, FROM))
-        out = output("out", values["out"], SUFFIXES, ".json")
+        out = output("out", values["out"], SUFFIXES)
         with styled():
             picture, numbers = redrawn(values["from"], "from", study.draw)
         save(picture, numbers, out)
@@ -70,7 +70,7 @@ def main() -> None:
     values.pop("from", None)
     table = getattr(study, "table", None)
     suffixes = SUFFIXES if table is None else (*SUFFIXES, TABLE)
-    out = output("out", values.pop("out"), suffixes, ".json")
+    out = output("out", values.pop("out"), suffixes)
     del values["study"]
     prepare(load([]))
     with styled():

@@ -129,7 +129,6 @@ OTHERS = [  # command and its arguments, words of the line
     ("demonstrate task=hopper", "task=hopper: has no scripted expert; give expert=babble or run"),
     ("render run={trained} out=film.avi", "out=film.avi: must end in .mp4, .gif, .png"),
     ("render task=panda_stack out=/dev/null/a.mp4", "a.mp4: there is no folder /dev/null"),
-    ("render run={trained} mode=training", "learns no belief over two coordinates, which"),
     ("figures runs=nowhere/*", "runs=nowhere/*: no run there"),
     ("figures {trained}", 'unknown argument; quote the pattern: runs="GLOB"'),
     ("figures rums={trained}", "threshold, others (did you mean runs?)"),

@@ -1,6 +1,5 @@
 """Films of one episode: of a simulated world, or of a Gymnasium environment, which draws itself."""
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -12,7 +11,7 @@ from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.envs.mujoco.scenery import check_drawable, pose_of, scene_of
 from hybrid_rl.outside.acting import TrainedPolicy
 from hybrid_rl.outside.host_loop import seed_of
-from hybrid_rl.training.rollout import evaluation_keys, rollout
+from hybrid_rl.training.rollout import rollout
 
 FASTEST = 60.0  # [1/s] pictures at most; faster worlds skip some
 FIRST = 200  # pictures of a video that the processor draws, unless a length is asked for
@@ -24,21 +23,6 @@ class Film(NamedTuple):
     poses: np.ndarray  # [frames, nq]
     total: float  # undiscounted return
     success: bool | None  # at the end; None: the task has no measure of it
-
-
-def episode(
-    trained: Any, mode: str = "full", seed: int | None = None, steps: int = 0, number: int = 0
-) -> Film:
-    """One episode of a loaded run.
-
-    trained: what `hybrid_rl.run.saved.load` returns. seed: of one of its learners; None is
-    the first. steps: at most this many decisions; 0 is the task's own limit. number: of the
-    evaluation's episode, from 0.
-    """
-    seed = int(trained.seeds[0]) if seed is None else seed
-    world = replace(trained.episode, steps=steps or trained.episode.steps)
-    controller, params = trained.learner(seed, mode, world=True)
-    return film(world, controller, params, evaluation_keys(seed, number + 1)[-1])
 
 
 def film(world: Any, controller: Any, params: Any, key: Any) -> Film:
@@ -81,12 +65,10 @@ def length(world: Any, asked: int, out: Path) -> int:
 
 
 def draw_outside(
-    trained: Any, mode: str, seed: int | None, steps: int, number: int, out: Path
+    world: Any, controller: Any, params: Any, key: Any, steps: int, out: Path
 ) -> tuple[int, float]:
-    """Draw an episode of a Gymnasium environment; (pictures, return). Arguments as of `episode`."""
-    world = trained.episode
-    policy = TrainedPolicy(world.spec, *trained.learner(seed, mode))
-    key = evaluation_keys(trained.seeds[0] if seed is None else seed, number + 1)[-1]
+    """Draw an episode of a Gymnasium environment, `steps` decisions at most; (pictures, return)."""
+    policy = TrainedPolicy(world.spec, controller, params)
     seeds = [seed_of(*map(int, jax.random.key_data(key)))]
     offscreen.lend()
     copies = world.env.copies(seeds, world.steps, world.action_repeat, "rgb_array")

@@ -92,44 +92,32 @@ def compose_raw(overrides: Sequence[str], config_dir: str | Path | None = None) 
                 config = compose("train", [*more, *words], return_hydra_config=True)
     except UNCOMPOSED as error:
         raise UsageError(explain(error)) from error
-    return read_only([config])[0]
+    return read(config)
 
 
-def take_hydra(config: DictConfig) -> DictConfig:
-    """Hydra's own part of what it composed, which `config` then lacks."""
-    with open_dict(config):
-        return config.pop("hydra")
+def read(config: DictConfig) -> DictConfig:
+    """What a run reads: its sections and all that they refer to, parts complete.
 
-
-def read_only(configs: Sequence[DictConfig]) -> list[DictConfig]:
-    """What the run of each job reads: its sections and all that they refer to, parts complete.
-
-    configs: as Hydra composed them, one for each job of a sweep.
+    config: as Hydra composed it, with Hydra's own part. UsageError for a typed key that it lacks.
     """
-    made, lost = zip(*map(read, configs), strict=True)
-    for path in lost[0]:
-        if all(path in each for each in lost):
-            raise UsageError(refusal(path, [overriding.raw_values(each) for each in made]))
-    return [*made]
-
-
-def read(config: DictConfig) -> tuple[DictConfig, dict[str, str]]:
-    """Keys that the run of a job reads, and those that it does not: typed key -> words."""
     config = config.copy()
-    hydra = take_hydra(config)
+    with open_dict(config):
+        hydra = config.pop("hydra")
     complete_names(config, hydra)
     raw = overriding.raw_values(config)
     new = raw["resume"] is None
-    typed = keys_of(overriding.of_job(hydra), hydra) if new else {}
-    sizes = settings_keys(hydra)  # a part that lacks one keeps what it has
-    raw = complete(raw, (*READ, "sweep"), {**typed, **sizes})
+    typed = keys_of(overriding.of_job(hydra), hydra) if new else []
+    # a part that lacks a key of `settings` keeps what it has
+    raw = complete(raw, (*READ, "sweep"), [*typed, *settings_keys(hydra)])
     if new:
         check_keys(hydra, raw)
-    lost = {path: text for path, text in typed.items() if select(raw, path) is LACKING}
+    for path in typed:
+        if select(raw, path) is LACKING:
+            raise UsageError(refusal(path, raw))
     sources = (each.path for each in hydra.runtime.config_sources if each.schema == "file")
     mine = [path for path in sources if Path(path) != CONF]
     raw["config_dir"] = mine[0] if mine else None  # of the user's files
-    return OmegaConf.create(raw, flags={"struct": True}), lost
+    return OmegaConf.create(raw, flags={"struct": True})
 
 
 def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:

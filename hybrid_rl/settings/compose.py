@@ -26,17 +26,17 @@ ROOT_KEY = re.compile(r"^(\w+):", re.MULTILINE)
 INHERIT = "set them, or begin with defaults: [/task@_global_: pendulum, _self_] to take its values"
 
 
-def keys_of(texts: Sequence[str], hydra: Any) -> dict[str, str]:
-    """Key -> override, of a job: that of a value, and of a choice that of the part it makes.
+def keys_of(texts: Sequence[str], hydra: Any) -> list[str]:
+    """The keys that overrides change: of a choice that of the part it makes.
 
     A choice that spreads over the configuration, as `algo`, and `sweep.KEY` have none.
     """
-    found = {}
-    for text, override in zip(texts, overrides.parse(texts), strict=True):
+    found = []
+    for override in overrides.parse(texts):
         file = chosen(hydra, override.key_or_group)
         spreads = file is not None and GLOBAL in file.read_text(encoding="utf-8")[:100]
         if not (spreads or override.is_delete() or overrides.is_swept(override.key_or_group)):
-            found[overrides.key(override).replace("/", ".")] = text
+            found.append((override.package or override.key_or_group).replace("/", "."))
     return found
 
 

@@ -16,7 +16,6 @@ import numpy as np
 from hydra.core.override_parser.types import Override
 
 from hybrid_rl import UsageError, part
-from hybrid_rl.cli.combinations import listed
 from hybrid_rl.fields import Count, Natural
 from hybrid_rl.files.atomic import refuse_link
 from hybrid_rl.run.logs.records import Row
@@ -52,7 +51,9 @@ def distribution(override: Override) -> "BaseDistribution":
     from optuna import distributions
 
     if not override.is_interval_sweep():
-        return distributions.CategoricalDistribution(listed(override))
+        return distributions.CategoricalDistribution(
+            [*dict.fromkeys(override.sweep_string_iterator())]
+        )
     sweep: Any = override.value()
     kind: Any = distributions.FloatDistribution
     if isinstance(sweep.start, int) and isinstance(sweep.end, int):

@@ -19,7 +19,6 @@ from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl import UsageError, figures
 from hybrid_rl.cli import sweep
-from hybrid_rl.cli.combinations import jobs_of, labels
 from hybrid_rl.errors import install
 from hybrid_rl.fields import FieldError
 from hybrid_rl.files.atomic import refuse_link
@@ -63,10 +62,7 @@ class Tuner(sweep.Sweeper):
         parsed = self._parsed(arguments)
         fixed, space = self._split(parsed)
         corners = _corners(fixed, space)
-        self.task.labels = labels(corners)
-        configs = self._read(corners)
-        self._check(corners, configs)
-        config = configs[0]
+        config = self._checked(corners)[0]
         if not [mode for mode in config.eval_modes if mode in config.controllers]:
             raise UsageError("eval_modes=[]: a study needs evaluations")
         folder = Path(str(config.run_dir or self.config.hydra.sweep.dir))
@@ -122,7 +118,7 @@ class Tuner(sweep.Sweeper):
                 space[each.get_key_element()] = study.distribution(each)
         if not space:
             raise UsageError(f"hydra/sweeper=tuned: no key has several values; {HINT}")
-        (fixed,) = jobs_of([each for each in parsed if not each.is_sweep_override()])
+        (fixed,) = sweep.jobs_of([each for each in parsed if not each.is_sweep_override()])
         return fixed, space
 
     def _watch(self, job: DictConfig) -> study.Watch:
