@@ -77,7 +77,7 @@ def test_the_task_is_changed_as_in_training(tmp_path, capsys):
         assert call(lambda: command.run(demonstrate.main), *line, wrong) == 2
     printed = capsys.readouterr().err
     assert "env.sped: sac has no such key" in printed
-    assert "planner.samples=3: unknown argument; give key=value with task" in printed
+    assert "planner.samples=3: unknown argument; give KEY=VALUE with task" in printed
 
 
 def test_a_task_of_ones_own_has_an_expert_too(tmp_path):

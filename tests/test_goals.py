@@ -111,7 +111,7 @@ def test_a_planner_of_the_users_is_checked_before_it_acts(known, tmp_path, monke
     (tmp_path / "controller").mkdir()
     gives = r"Push\.act: returned action float32\[2\]; it must be float32\[1\]"
     for name, more, words in (
-        ("push", "", "Push has no greedy; write def greedy"),
+        ("push", "", r"Push has no greedy; see protocols\.Controller"),
         ("push_on", "    def greedy(self): return self\n", gives),
     ):
         (tmp_path / f"{name}.py").write_text(PUSH + more)

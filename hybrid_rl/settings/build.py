@@ -1,7 +1,7 @@
 """From overrides to parts: compose conf/, check it, build a run."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +17,7 @@ from hybrid_rl.envs.adapters.external import External, check_world
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.mujoco.physics import resolve as resolve_physics
 from hybrid_rl.errors import PartError, UsageError
-from hybrid_rl.fields import FieldError
+from hybrid_rl.fields import FieldError, check_all
 from hybrid_rl.files.targets import build as build_part
 from hybrid_rl.protocols import Controller
 from hybrid_rl.settings import values as checks
@@ -25,7 +25,6 @@ from hybrid_rl.settings import words as overriding
 from hybrid_rl.settings.complete import LACKING, complete, refusal, select
 from hybrid_rl.settings.compose import (
     UNCOMPOSED,
-    check_keys,
     complete_names,
     explain,
     keys_of,
@@ -33,7 +32,7 @@ from hybrid_rl.settings.compose import (
 )
 from hybrid_rl.settings.groups import CONF, groups, search_path
 from hybrid_rl.settings.registry import register
-from hybrid_rl.settings.values import COUNTS, PAID, SECTIONS, check, check_kinds
+from hybrid_rl.settings.values import COUNTS, PAID, SECTIONS, check
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import Imagination
@@ -79,17 +78,19 @@ def load(overrides: Sequence[str] = (), config_dir: str | Path | None = None) ->
 
 def compose_raw(overrides: Sequence[str], config_dir: str | Path | None = None) -> DictConfig:
     """What a run of these overrides reads, with its references; errors as `load`."""
-    if isinstance(overrides, str | Mapping):
-        pairs = {} if isinstance(overrides, str) else overrides
-        words = [f"{key}={value}" for key, value in pairs.items()] or str(overrides).split()
-        raise UsageError(f'"{overrides}": give a list, {words}')
-    more = [] if config_dir is None else [search_path(config_dir)]
+    if isinstance(overrides, str):
+        raise UsageError(f'"{overrides}": give a list, {overrides.split()}')
     words = overriding.forced(overrides, groups(config_dir))
+    if config_dir is not None:
+        own = search_path(config_dir)
+        others = [text for text in words if overriding.name(text) == "hydra.searchpath"]
+        paths = ",".join(text.partition("=[")[2].rstrip("]") for text in (own, *others))
+        words = [f"hydra.searchpath=[{paths}]", *(text for text in words if text not in others)]
     try:
         with COMPOSING:
             known = GlobalHydra.instance().is_initialized()
             with nullcontext() if known else initialize_config_dir(str(CONF), version_base="1.3"):
-                config = compose("train", [*more, *words], return_hydra_config=True)
+                config = compose("train", words, return_hydra_config=True)
     except UNCOMPOSED as error:
         raise UsageError(explain(error)) from error
     return read(config)
@@ -109,8 +110,6 @@ def read(config: DictConfig) -> DictConfig:
     typed = keys_of(overriding.of_job(hydra), hydra) if new else []
     # a part that lacks a key of `settings` keeps what it has
     raw = complete(raw, (*READ, "sweep"), [*typed, *settings_keys(hydra)])
-    if new:
-        check_keys(hydra, raw)
     for path in typed:
         if select(raw, path) is LACKING:
             raise UsageError(refusal(path, raw))
@@ -184,7 +183,6 @@ def _acting(parts: DictConfig) -> tuple[Episode, tuple[str, ...], dict[str, Cont
 def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller], Imagination | None]:
     """The episodes of `config`, its controllers, and what learns before them."""
     with _usage(config):
-        check_kinds(config)
         parts = _on_this_machine(config)
         episode, _, controllers = _acting(parts)
         before = _instantiate(parts.get("imagine"), "imagine")
@@ -194,13 +192,16 @@ def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller], Imaginat
 def episodes(config: DictConfig) -> Episode:
     """The episodes of `config`, without its method."""
     with _usage(config):
-        check_kinds(OmegaConf.create({"env": config.env}))
         return _episode(_on_this_machine(config))[0]
 
 
 def _episode(parts: DictConfig) -> tuple[Episode, tuple[str, ...]]:
     """The episodes of the sections `env` and `episode`, and notes about a world of the user's."""
     env = _instantiate(parts.env, "env")
+    try:
+        check_all(env)
+    except FieldError as error:
+        raise error.at("env") from None
     notes = check_world(env)
     target = {"_target_": "hybrid_rl.training.episode.Episode", "env": env}
     given = target | _instantiate(parts.episode, "episode")
@@ -215,7 +216,6 @@ def expert(config: DictConfig) -> Controller:
     if config.get("expert") is None:
         line = "has no scripted expert; give expert=babble or run=DIR"
         raise UsageError(f"task={config.task}: {line}")
-    check_kinds(config.expert, "expert.")
     with _usage(config, "its expert"):
         return _instantiate(config.expert, "expert")
 

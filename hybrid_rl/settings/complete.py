@@ -21,10 +21,6 @@ LACKING: Any = object()  # the value of a key that does not exist
 NAMES = {"world": "env"}  # field -> the key that it refers to, where its name is another
 CLASSES = {"episode": "hybrid_rl.training.episode.Episode"}  # of a section without a `_target_`
 CHOICES = ("settings", "experiment", "learning", "planner")  # groups without a key of their name
-THEIRS = {  # names of other libraries
-    **{"gamma": "discount", "lr": "learning_rate", "buffer_size": "capacity"},
-    **{"learning_starts": "random_steps", "total_timesteps": "total_steps"},
-}
 
 
 def source(raw: Mapping[str, Any], path: str) -> str:
@@ -189,7 +185,7 @@ def refusal(path: str, raw: dict[str, Any]) -> str:
 
 def nearest(word: str, known: Iterable[str]) -> str:
     """The known key that is most like a word: with its last name, or by its letters; or ""."""
-    known, word = [*known], THEIRS.get(word, word)
+    known = [*known]
     ends = re.compile(rf"(^|[._]){re.escape(word)}$")
     if same := [key for key in known if ends.search(key)]:
         return min(same, key=lambda key: (key.split(".")[-1] != word, key.count(".")))

@@ -34,7 +34,6 @@ FILES = [  # of Python and YAML: replaced, by what, the whole line
     ("# @package _global_\n", "", rf"{YAML} its first line must be # @package _global_"),
     ("env: {_target_: w.W, gain: 2.0}\n", "", rf"{YAML} lacks env; .*"),
     ("eval_every: 50\neval_episodes: 1\n", "", rf"{YAML} lacks eval_every, eval_episodes; .*"),
-    ("eval_every", "scale: 3\neval_every", rf"{YAML} scale: unknown key, which nothing reads.*"),
     ("episode: {steps: 20, action_repeat: 1}", "episode:\n\tsteps: 2", rf"{YAML}\d: is no YAML.*"),
     ("{steps:", "{step:", r"episode: Episode\.__init__\(\) got an unexpected .* 'step'"),
     ("_target_: w.W, ", "", r"env={'gain': 2\.0}: must be a part, a group of keys with _target_"),

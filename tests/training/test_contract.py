@@ -165,7 +165,7 @@ FAULTY = [  # a learner or a controller, the line after the file
     (Fit(wrong="longer"), "Fit.update: returned state[2] int32[], init gave nothing; both must"),
     (Fit(wrong="type"), "Fit.update: returned state[1] float32[], init gave int32[]; both must"),
     (Fit(Wide()), "Wide.step: returned x float32[1, 3], lift gave float32[3]; both must"),
-    (Fit(Actless()), "Actless.init: TypeError: "),
+    (Fit(Actless()), "Actless has no lift, which Fit.model needs; see protocols.Model"),
     (Actless(), "Actless has no act; see protocols.Controller"),
     (SamplingController, "SamplingController is a class; give SamplingController()"),
     (Planner(wrong="line"), "Planner.act: TypeError: add got incompatible shapes for broadcasting"),
