@@ -193,10 +193,9 @@ def _fitted(kind: Any, value: Any, fail: Fail, entry: bool = False) -> Any:
     for kind in kinds:
         origin, of = get_origin(kind), get_args(kind)
         if origin is Annotated:
-            number = of[0] in (int, float)
-            value = value if number else _fitted(of[0], value, fail)
-            _obey(of[1], value, fail, number)
-            value = _fitted(of[0], value, fail) if number else value
+            if of[0] is not int:  # its rules say that it is a whole number
+                value = _fitted(of[0], value, fail)
+            _obey(of[1], value, fail, of[0] in (int, float))
         elif origin is Literal:
             if value not in of:
                 fail(f"choose one of {', '.join(map(str, of))}")

@@ -72,24 +72,25 @@ def main() -> None:
     offscreen.check_size(given["width"], given["height"])
     seed, number, steps = given["seed"], given["episode"], given["episode_steps"]
     if given["task"]:
-        world, *acting = scripted_expert(given, changes)
+        world, controller, params = scripted_expert(given, changes)
         seed, by = seed or 0, "scripted expert"
     else:
         trained = load_changed(given, changes)[0]
         print(*(f"{note}\n" for note in trained.notes), sep="", end="")
-        world, acting = trained.episode, trained.learner(seed, given["mode"], world=True)
+        world = trained.episode
+        controller, params = trained.learner(seed, given["mode"], world=True)
         seed, by = trained.seeds[0] if seed is None else seed, f"step {trained.step:,}"
     key = evaluation_keys(seed, number + 1)[-1]
     if isinstance(world.env, External):
         if given["at"] or (given["width"], given["height"]) != SIZE:
             line = "a Gymnasium environment draws itself in its own size"
             raise UsageError(f"at, width, height: {line}")
-        pictures, total = film.draw_outside(world, *acting, key, steps, out)
+        pictures, total = film.draw_outside(world, controller, params, key, steps, out)
         print(f"{out}: {pictures} pictures, return {total:,.1f}, {by}")
         return
     say("compiling an episode ...")  # of a planner, a minute
     begun = replace(world, steps=film.length(world, steps, out))
-    _draw(world, film.film(begun, *acting, key), given, out, by)
+    _draw(world, film.film(begun, controller, params, key), given, out, by)
 
 
 def _out(given: dict[str, Any], named: str) -> Path:

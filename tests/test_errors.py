@@ -49,7 +49,7 @@ USAGE = [  # overrides of train, after task=pendulum algo=hybrid_stochastic; wor
     ("num_envs=2.5", f"num_envs=2.5: {COUNT}"),
     ("seed=4294967290 num_seeds=8", "must be a whole number, from 0 to 4294967288"),
     ("planner.samples=0", f"planner.samples=0: {COUNT}"),
-    ("planner.temperature=hot", "planner.temperature=hot: must be above 0"),
+    ("planner.temperature=hot", "planner.temperature=hot: must be a number"),
     ("task=cartpole env.reward=foo", "env.reward=foo: choose one of cos, dm_control"),
     ("policy_learner.tau=2", "policy_learner.tau=2: must lie in (0, 1]"),
     ("policy.hidden=16", "policy.hidden=16: must be a list"),

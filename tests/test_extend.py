@@ -18,10 +18,9 @@ from tiny import TINY, call, call_train, only_line, summary_of
 from hybrid_rl import evaluate, render
 from hybrid_rl.analysis import film
 from hybrid_rl.cli import command
-from hybrid_rl.envs import check
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.mujoco import offscreen
-from hybrid_rl.errors import UsageError
+from hybrid_rl.errors import SourceOf, UsageError
 from hybrid_rl.outside.actor import Actor
 from hybrid_rl.outside.row_log import RowLog
 from hybrid_rl.run.saved import load
@@ -297,5 +296,7 @@ class Swing:
 def test_an_error_in_a_callback_is_a_line_of_its_file(conf, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "swing.py").write_text(CALLBACK)
+    world = import_module("swing").Swing()
+    step = jax.jit(world.step)
     with pytest.raises(UsageError, match=r"^swing\.py:8: Swing\.step: "):
-        check(import_module("swing").Swing())
+        SourceOf(world).blamed("step", step, world.reset(jax.random.key(0)), jnp.zeros(1))

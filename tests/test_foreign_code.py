@@ -359,6 +359,7 @@ def test_a_class_of_the_user_is_a_part_and_a_function_is_none(folder):
 
 def test_words_that_a_terminal_or_matplotlib_obeys_are_shown_as_they_are(folder, capfd):
     """In a line of ours, and in a picture."""
+    (folder / "checkpoints" / "5").rmdir()
     changed(folder, task="$\\undefined{x}$", algo="$y_{$")
     for main, out in ((report.main, "a.html"), (figures.main, "a.svg")):
         line = [f"run={folder}"] if main is report.main else [f"runs={folder}", METRIC]

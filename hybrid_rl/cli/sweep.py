@@ -8,8 +8,8 @@ the highest one of its jobs. `jobs.json` in the sweep's folder holds what the ta
 import json
 import sys
 import traceback
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -142,15 +142,20 @@ class Sweeper:
     def _checked(self, jobs: Sequence[Sequence[str]]) -> list[DictConfig]:
         """What the runs of the jobs read, after all checks that need no compilation."""
         self.task.labels = labels(jobs)
-        configs = [self._named(*job, self._composed) for job in enumerate(jobs)]
-        for number, config in enumerate(configs):
-            self._named(number, (config, jobs[number]), self._check)
+        configs = []
+        for number, job in enumerate(jobs):
+            with self._naming(number):
+                configs.append(self._composed(job))
+        for number, (job, config) in enumerate(zip(jobs, configs, strict=True)):
+            with self._naming(number):
+                self._check(job, config.copy())
         return configs
 
-    def _named(self, number: int, given: Any, step: Callable[[Any], Any]) -> Any:
-        """`step` of a job, whose errors name it."""
+    @contextmanager
+    def _naming(self, number: int) -> Iterator[None]:
+        """Within, errors name the job."""
         try:
-            return step(given)
+            yield
         except (UsageError, *UNCOMPOSED) as error:
             line = error if isinstance(error, UsageError) else explain(error)
             label = f"{self.task.called} {number}: {self.task.labels[number]}"
@@ -160,22 +165,22 @@ class Sweeper:
         loader = self.hydra_context.config_loader
         return configuration.read(loader.load_sweep_config(self.config, self._forced(job)))
 
-    def _check(self, job: tuple[DictConfig, Sequence[str]]) -> None:
+    def _check(self, job: Sequence[str], config: DictConfig) -> None:
         """Raise UsageError if a job cannot run, alone or with those that share its program.
 
         One that runs elsewhere is built with the physics that needs no GPU here; of those of
         distributed=true, which run here, the processes are counted first.
         """
-        config, local = job[0].copy(), here(self.config.hydra)
+        local = here(self.config.hydra)
         if not local and config.physics in ACCELERATED:
             config.physics = "native"
-        swept, runs = program.expand_sweep(config, job[1]), []
-        for config in (member.config for member in swept if member.config.resume is None):
-            check(config)
-            prepare(config)  # first: a check of the user's world initialises JAX
-            if local and config.distributed:
-                distributed.share(config)
-            runs.append(build_new_run(config)[0])
+        swept, runs = program.expand_sweep(config, job), []
+        for own in (member.config for member in swept if member.config.resume is None):
+            check(own)
+            prepare(own)  # first: a check of the user's world initialises JAX
+            if local and own.distributed:
+                distributed.share(own)
+            runs.append(build_new_run(own)[0])
         if len(runs) > 1:
             program.axis_of([member.values for member in swept], runs)
 

@@ -17,11 +17,9 @@ from hybrid_rl.envs.adapters.external import External, check_world
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.mujoco.physics import resolve as resolve_physics
 from hybrid_rl.errors import PartError, UsageError
-from hybrid_rl.fields import FieldError, check_all
+from hybrid_rl.fields import FieldError
 from hybrid_rl.files.targets import build as build_part
 from hybrid_rl.protocols import Controller
-from hybrid_rl.settings import values as checks
-from hybrid_rl.settings import words as overriding
 from hybrid_rl.settings.complete import LACKING, complete, refusal, select
 from hybrid_rl.settings.compose import (
     UNCOMPOSED,
@@ -32,7 +30,17 @@ from hybrid_rl.settings.compose import (
 )
 from hybrid_rl.settings.groups import CONF, groups, search_path
 from hybrid_rl.settings.registry import register
-from hybrid_rl.settings.values import COUNTS, PAID, SECTIONS, check
+from hybrid_rl.settings.values import (
+    COUNTS,
+    PAID,
+    SECTIONS,
+    check,
+    random_decisions,
+    set_length,
+    time_limit,
+    whole,
+)
+from hybrid_rl.settings.words import forced, name, of_job, raw_values, typed_values
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import Imagination
@@ -80,10 +88,10 @@ def compose_raw(overrides: Sequence[str], config_dir: str | Path | None = None) 
     """What a run of these overrides reads, with its references; errors as `load`."""
     if isinstance(overrides, str):
         raise UsageError(f'"{overrides}": give a list, {overrides.split()}')
-    words = overriding.forced(overrides, groups(config_dir))
+    words = forced(overrides, groups(config_dir))
     if config_dir is not None:
         own = search_path(config_dir)
-        others = [text for text in words if overriding.name(text) == "hydra.searchpath"]
+        others = [text for text in words if name(text) == "hydra.searchpath"]
         paths = ",".join(text.partition("=[")[2].rstrip("]") for text in (own, *others))
         words = [f"hydra.searchpath=[{paths}]", *(text for text in words if text not in others)]
     try:
@@ -105,9 +113,9 @@ def read(config: DictConfig) -> DictConfig:
     with open_dict(config):
         hydra = config.pop("hydra")
     complete_names(config, hydra)
-    raw = overriding.raw_values(config)
+    raw = raw_values(config)
     new = raw["resume"] is None
-    typed = keys_of(overriding.of_job(hydra), hydra) if new else []
+    typed = keys_of(of_job(hydra), hydra) if new else []
     # a part that lacks a key of `settings` keeps what it has
     raw = complete(raw, (*READ, "sweep"), [*typed, *settings_keys(hydra)])
     for path in typed:
@@ -128,7 +136,7 @@ def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
     values.pop("sweep", None)
     words = (text for text in overrides if not re.match(r"\+*(sweep|hydra)\.|-", text))
     values["recipe"] = [re.sub(r"\$\{([^}]*)\}", r"$(\1)", text) for text in words]  # no references
-    values["random_steps"] = checks.random_decisions(values, overriding.typed_values(overrides))
+    values["random_steps"] = random_decisions(values, typed_values(overrides))
     if values["task"] in ("gymnasium", "playground", "robot"):  # of many environments
         names = (values["env"].get(key) for key in ("make", "id", "name"))
         values["task"] = re.sub(r"[^A-Za-z0-9_.-]", "_", str(next(filter(None, names), "_")))
@@ -154,10 +162,10 @@ def built(config: DictConfig) -> Run:
     """As `build`, of a configuration that `check` has passed."""
     rounds = -(-config.total_steps // config.num_envs)
     remembered = config.get("begun", {}).get("remembered", 0)  # decisions of each environment
-    checks.whole("replay.capacity", config.replay.capacity)
+    whole("replay.capacity", config.replay.capacity)
     with _usage(config):
         parts = _on_this_machine(config)
-        checks.set_length(parts.learners, config.total_steps)
+        set_length(parts.learners, config.total_steps)
         episode, notes, controllers = _acting(parts)
         agent = Agent(
             episode,
@@ -198,16 +206,12 @@ def episodes(config: DictConfig) -> Episode:
 def _episode(parts: DictConfig) -> tuple[Episode, tuple[str, ...]]:
     """The episodes of the sections `env` and `episode`, and notes about a world of the user's."""
     env = _instantiate(parts.env, "env")
-    try:
-        check_all(env)
-    except FieldError as error:
-        raise error.at("env") from None
     notes = check_world(env)
     target = {"_target_": "hybrid_rl.training.episode.Episode", "env": env}
     given = target | _instantiate(parts.episode, "episode")
     given |= {name: _instantiate(parts.get(name) or None, name) for name in PAID}
     if isinstance(env, External | Robot):
-        given |= checks.time_limit(env, given)
+        given |= time_limit(env, given)
     return build_part(given, where="episode"), notes
 
 
@@ -232,16 +236,16 @@ def _on_this_machine(config: DictConfig) -> DictConfig:
     """The sections, in which every copy of the world has its physics resolved."""
     sections = [key for key in (*SECTIONS, *PAID, "imagine") if key in config]
     parts: Any = OmegaConf.masked_copy(config, sections)
-    name = physics(config)
+    chosen = physics(config)
 
     def visit(node: Any) -> None:
         for key, value in node.items() if isinstance(node, DictConfig) else enumerate(node):
             if key == "physics" and value == config.env.physics:
-                node[key] = name
+                node[key] = chosen
             elif isinstance(value, (DictConfig, ListConfig)):
                 visit(value)
 
-    if name is not None:
+    if chosen is not None:
         visit(parts)
     return parts
 

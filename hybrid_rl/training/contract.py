@@ -115,8 +115,9 @@ def check_acting(
             )
             of.check()
     for controller in controllers:
-        for acting in (controller, SourceOf(controller).blamed("greedy", controller.greedy)):
-            Contract(acting, Controller, episode.spec, values={"Params": params}).check()
+        Contract(controller, Controller, episode.spec, values={"Params": params}).check()
+        greedy = SourceOf(controller).blamed("greedy", controller.greedy)
+        Contract(greedy, Controller, episode.spec, values={"Params": params}).check()
 
 
 def _kind(learner: Any) -> type:
