@@ -42,8 +42,6 @@ def make(task: str, overrides: Sequence[str] = (), config_dir: str | Path | None
     Raises:
         UsageError: for a task or a key that does not exist, or a value out of range.
     """
-    if isinstance(overrides, str):
-        raise UsageError(f'make("{task}", "{overrides}"): give a list, ["{overrides}"]')
     return config.episodes(config.load([f"task={task}", "algo=sac", *overrides], config_dir))
 
 

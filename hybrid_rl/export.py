@@ -47,9 +47,6 @@ def main() -> None:
     from hybrid_rl.run.saved import load_named
 
     trained = load_named(given)
-    if given["mode"] == "policy" and "policy" not in trained.controllers:
-        line = "the run has no policy, only a planner; give mode=full out=FILE.stablehlo"
-        raise UsageError(f"mode=policy: {line}")
     controller, params = trained.learner(given["seed"], given["mode"])
     spec = trained.episode.spec
     if parts := getattr(trained.episode.env, "parts", ""):

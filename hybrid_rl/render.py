@@ -6,7 +6,8 @@
     python -m hybrid_rl.render task=T [out=T.mp4] [seed=0] [episode_steps=] [env.KEY=VALUE ...]
 
 `out` ends in .mp4 or .gif for a video, in .png for the picture halfway through the episode, or
-with at=0,20,40 for those after so many decisions, side by side.
+with at=0,20,40 for those after so many decisions, side by side. A Gymnasium environment draws
+itself, in its own size and without at=.
 
 The episode is one of the run's own evaluation, the first unless episode=N: same key, no
 exploration. policy=NAME is a trained policy of policies/, or a file. reward, planner, env.KEY and
@@ -82,9 +83,6 @@ def main() -> None:
         seed, by = trained.seeds[0] if seed is None else seed, f"step {trained.step:,}"
     key = evaluation_keys(seed, number + 1)[-1]
     if isinstance(world.env, External):
-        if given["at"] or (given["width"], given["height"]) != SIZE:
-            line = "a Gymnasium environment draws itself in its own size"
-            raise UsageError(f"at, width, height: {line}")
         pictures, total = film.draw_outside(world, controller, params, key, steps, out)
         print(f"{out}: {pictures} pictures, return {total:,.1f}, {by}")
         return

@@ -54,7 +54,7 @@ USAGE = [  # overrides of train, after task=pendulum algo=hybrid_stochastic; wor
     ("policy_learner.tau=2", "policy_learner.tau=2: must lie in (0, 1]"),
     ("policy.hidden=16", "policy.hidden=16: must be a list"),
     ("planner.policy.hidden=[3]", "planner.policy={'hidden': [3]}: must be a part, or null"),
-    ("eval_modes=[full,both]", "eval_modes=['full', 'both']: must be a list of full"),
+    ("eval_modes=[full,both]", "eval_modes=both: choose one of full, policy, planner"),
     ("physics=bullet", "physics=bullet: choose one of auto, native, mjx, warp"),
     ("task=cartpole physics=warp", "physics=warp: must have an NVIDIA GPU"),
     ("algo=sac replay.capacity=9", "replay.capacity=9: holds less than one batch, policy_learner."),

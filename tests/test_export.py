@@ -234,9 +234,3 @@ def test_what_cannot_be_exported_is_one_line(trained, tmp_path, monkeypatch, cap
     assert main(*given.split()) == 2
     assert line in only_line(capfd)
     assert not [*tmp_path.iterdir()]
-
-
-def test_a_run_without_a_policy_has_a_planner_to_export(trained, monkeypatch, capfd):
-    monkeypatch.delitem(trained.controllers, "policy")
-    assert main("out=a.onnx") == 2
-    assert "the run has no policy, only a planner; give mode=full" in only_line(capfd)

@@ -3,7 +3,6 @@
 import os
 import re
 import sys
-from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 
@@ -165,7 +164,7 @@ def test_a_mujoco_environment_is_two_files_and_one_yaml(conf, tmp_path, capfd, c
     assert capfd.readouterr().err == ""
     trained = load(tmp_path / "run")
     assert (evaluate.evaluate(trained, episodes=1)["return"] < 0).all()
-    shown = film.film(replace(trained.episode, steps=3), *trained.learner(), jax.random.key(0))
+    shown = film.episode(trained, steps=3)
     assert shown.poses.shape == (4, 2)
     if can_draw:
         picture = tmp_path / "crane.gif"

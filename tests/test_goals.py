@@ -218,7 +218,7 @@ def test_a_return_that_is_not_finite_is_one_line_and_no_file(
         ("reward=fame", "reward=fame: unknown; choose one of aim, height, level"),
         ("reward.target=2", "reward.target=2: is a key of reward=NAME; give that with it"),
         ("planner.samples=0", "planner.samples=0: must be a whole number, 1 or more"),
-        ("episode.sensor_noise=a", "episode.sensor_noise=a: must be 0 or more"),
+        ("episode.sensor_noise=a", "episode.sensor_noise=a: must be a number"),
         ("reward=speed reward.tarket=2", "has no such key; did you mean reward.target?"),
         ("reward=level", "reward.world=Cartpole: has no pitch, only position, speed, height"),
         ("planner=fast", "hybrid_rl: planner=fast: unknown; choose one of adjoint"),

@@ -131,7 +131,6 @@ def test_a_signal_stays_the_cause_of_the_end_where_the_function_asks_as_well():
     [
         (lambda: hr.train(task="pendulum"), r'train\(\["task=pendulum", \.\.\.\]\)'),
         (lambda: hr.train("task=pendulum"), r"\"task=pendulum\": give a list, \['task=pendulum'\]"),
-        (lambda: hr.make("pendulum", "env.a=1"), r'give a list, \["env\.a=1"\]'),
         (lambda: hr.load("pendulm"), r"load\('pendulm'\): no run folder, .* pendulum"),
     ],
 )

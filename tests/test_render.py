@@ -1,12 +1,11 @@
 """The render command."""
 
 import sys
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from types import SimpleNamespace
 
 import imageio.v3 as iio
-import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -73,12 +72,6 @@ def trained(monkeypatch):
     return run
 
 
-def episode(trained, seed=3, steps=20):
-    """The film of an episode of a learner."""
-    world, acting = replace(trained.episode, steps=steps), trained.learner(seed)
-    return film.film(world, *acting, jax.random.key(0))
-
-
 def call(monkeypatch, *arguments):
     """Exit code of the command."""
     monkeypatch.setattr(sys, "argv", ["render", *map(str, arguments)])
@@ -90,12 +83,12 @@ def call(monkeypatch, *arguments):
 
 
 def test_an_episode_ends_where_the_world_ends(trained):
-    poses, total, success = episode(trained)
+    poses, total, success = film.episode(trained)
     np.testing.assert_allclose(poses[:, 0], 0.1 * np.arange(6), atol=1e-6)
     assert (total, success) == (5, None)
-    poses, total, _ = episode(trained, seed=4)
+    poses, total, _ = film.episode(trained, seed=4)
     assert (poses.shape, total) == ((21, 1), 0)
-    poses, total, _ = episode(trained, steps=3)
+    poses, total, _ = film.episode(trained, steps=3)
     assert (len(poses), total) == (4, 3)
 
 
@@ -139,7 +132,7 @@ class Goal(Slider):
 
 def test_success_is_that_of_the_end(trained):
     trained.episode = Episode(Goal(), steps=20)
-    assert [episode(trained, seed=seed).success for seed in (3, 4)] == [True, False]
+    assert [film.episode(trained, seed=seed).success for seed in (3, 4)] == [True, False]
 
 
 def test_pictures_side_by_side(trained, tmp_path, monkeypatch, capsys, can_draw):
@@ -231,7 +224,7 @@ def test_a_still_is_of_the_whole_episode(trained, tmp_path, monkeypatch, can_dra
     monkeypatch.setattr(film, "FIRST", 1)
     small = ["width=64", "height=48", f"out={tmp_path / 'a.png'}"]
     assert call(monkeypatch, "run=x", *small) == 0
-    poses = episode(trained).poses
+    poses = film.episode(trained).poses
     middle = next(drawing.frames(FIXED, poses[len(poses) // 2][None], 64, 48))
     np.testing.assert_array_equal(iio.imread(tmp_path / "a.png"), middle)
 

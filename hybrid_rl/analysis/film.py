@@ -1,5 +1,6 @@
 """Films of one episode: of a simulated world, or of a Gymnasium environment, which draws itself."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -11,7 +12,7 @@ from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.envs.mujoco.scenery import check_drawable, pose_of, scene_of
 from hybrid_rl.outside.acting import TrainedPolicy
 from hybrid_rl.outside.host_loop import seed_of
-from hybrid_rl.training.rollout import rollout
+from hybrid_rl.training.rollout import evaluation_keys, rollout
 
 FASTEST = 60.0  # [1/s] pictures at most; faster worlds skip some
 FIRST = 200  # pictures of a video that the processor draws, unless a length is asked for
@@ -23,6 +24,21 @@ class Film(NamedTuple):
     poses: np.ndarray  # [frames, nq]
     total: float  # undiscounted return
     success: bool | None  # at the end; None: the task has no measure of it
+
+
+def episode(
+    trained: Any, mode: str = "full", seed: int | None = None, steps: int = 0, number: int = 0
+) -> Film:
+    """One episode of a loaded run.
+
+    trained: what `hybrid_rl.run.saved.load` returns. seed: of one of its learners; None is
+    the first. steps: at most this many decisions; 0 is the task's own limit. number: of the
+    evaluation's episode, from 0.
+    """
+    seed = int(trained.seeds[0]) if seed is None else seed
+    world = replace(trained.episode, steps=steps or trained.episode.steps)
+    controller, params = trained.learner(seed, mode, world=True)
+    return film(world, controller, params, evaluation_keys(seed, number + 1)[-1])
 
 
 def film(world: Any, controller: Any, params: Any, key: Any) -> Film:

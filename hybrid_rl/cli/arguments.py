@@ -1,6 +1,5 @@
 """key=value arguments of a command, declared once for parsing, checks and --help."""
 
-import errno
 import inspect
 import math
 import sys
@@ -195,8 +194,6 @@ def output(key: str, out: str | Path, suffixes: Sequence[str]) -> Path:
     if out.suffix not in suffixes:
         raise UsageError(f"{key}={out}: must end in {', '.join(suffixes)}")
     try:
-        if out.is_dir():
-            raise IsADirectoryError(errno.EISDIR, "it is a folder")
         with TemporaryFile(dir=out.absolute().parent):
             pass
     except OSError as error:

@@ -105,8 +105,6 @@ def _sorted(line: Sequence[str]) -> tuple[list[str], list[str], list[str]]:
             if name in FOLDER:
                 search_path(value)  # UsageError unless it is a folder
                 folders.append(value)
-            elif value != "job":
-                raise UsageError(f"{name}={value}: write --cfg job")
             else:
                 options.append(name)
         elif text in SWEEP:

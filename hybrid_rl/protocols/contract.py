@@ -28,6 +28,7 @@ TERM = re.compile(r"(\w+)( \[(.*?)\])?")
 OTHERS = {"hybrid_rl", "jax", "jaxlib", *sys.stdlib_module_names}  # packages
 FORM = {"obs": "o", "reward": "", "terminated": "", "truncated": ""}  # of an EnvState
 FLAGS = "terminated", "truncated"
+T = 5  # decisions of a path
 
 
 def gives(signature: str) -> Callable[[Thing], Thing]:
@@ -54,7 +55,7 @@ class Contract:
 
     def __post_init__(self) -> None:
         self.source = SourceOf(self.part, self.error)
-        self.sizes = {"T": 5, "o": self.spec.obs, "m": self.spec.act, "n": self.spec.n}
+        self.sizes = {"o": self.spec.obs, "m": self.spec.act, "n": self.spec.n}
         key = jax.eval_shape(lambda: jax.random.key(0))
         self.values = {"key": key, "spec": self.spec, **self.values}
         self.given: dict[str, str] = {}  # the method that gave a value
@@ -117,19 +118,14 @@ class Contract:
         return jax.ShapeDtypeStruct(self._shape("n" if sizes is None else sizes), jnp.float32)
 
     def _shape(self, sizes: str) -> tuple[int | str, ...]:
-        """[T+1, n] in numbers; a letter without one stays."""
-        shape = []
-        for size in filter(None, sizes.split(", ")):
-            letter, plus, more = size.partition("+")
-            number = self.sizes.get(letter, letter)
-            shape.append(number + int(more) if plus and isinstance(number, int) else number)
-        return tuple(shape)
+        """Sizes in numbers; a letter without one stays."""
+        return tuple(self.sizes.get(size, size) for size in filter(None, sizes.split(", ")))
 
     def _of_path(self, result: Any) -> Any:
         """A result; of a function of a path what it gives."""
         if not inspect.isfunction(result):
             return result
-        T, x = self.sizes["T"], self._value("x", None)
+        x = self._value("x", None)
         xs = jax.tree.map(lambda leaf: jnp.zeros((T + 1, *leaf.shape), leaf.dtype), x)
         return result(Path(xs, jnp.zeros((T, self.spec.act))))
 

@@ -5,7 +5,7 @@ from collections.abc import Collection, Mapping
 from numbers import Integral
 from typing import Any
 
-from omegaconf import DictConfig, ListConfig, OmegaConf
+from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.adapters.robot import Robot
@@ -51,13 +51,8 @@ def check(config: DictConfig) -> None:
         whole(key, config[key])
     countable(config)
     whole("seed", config.seed, 0, SEEDS - config.num_seeds)
-    modes, freeze = config.eval_modes, config.get("freeze", ListConfig([]))
-    if not (isinstance(modes, ListConfig) and {*modes} <= {*MODES}):
-        raise UsageError(f"eval_modes={as_yaml(modes)}: must be a list of {', '.join(MODES)}")
-    if not (isinstance(freeze, ListConfig) and all(type(name) is str for name in freeze)):
-        raise UsageError(f"freeze={freeze}: must be a list of learners, as in freeze=[policy]")
-    for key in ("checkpoint_replay", "distributed"):
-        one_of(key, config.get(key, False), (True, False))
+    for mode in [None] if config.eval_modes is None else config.eval_modes:
+        one_of("eval_modes", mode, MODES)
     for key, known in (("precision", PRECISIONS), ("physics", IMPLEMENTATIONS)):
         one_of(key, config[key], known)
 
