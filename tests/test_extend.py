@@ -115,19 +115,14 @@ def test_a_part_is_one_file_and_one_yaml(ring, tmp_path, capfd):
     [
         (["target=rings"], "policy_residual, ring, upper_confidence_bound; did you mean ring?"),
         (["target=ring", "target.radius=far"], "target.radius=far: must be a number"),
-        (["target=ring", "target.radios=1"], "has no such key; did you mean target.radius?"),
         (["target=ring", "target._target_=ring.Any"], "target._target_=ring.Any: "),
         (
             ["target=ring", "target._target_=their.Any"],
             "_target_=their.Any: is no part of hybrid_rl; put its folder on PYTHONPATH",
         ),
-        (
-            ["algo=nn_mppi", "proposal=noise"],
-            "proposal: nn_mppi has no such key; did you mean model_proposal?",
-        ),
         (["domain.coordinates=[0,9]"], "coordinates=[0, 9]: must be entries of a state with 4"),
     ],
-    ids=["name", "value", "key", "class", "module", "unused", "traced"],
+    ids=["name", "value", "class", "module", "traced"],
 )
 def test_an_error_about_a_part_is_one_line(ring, tmp_path, capfd, overrides, words):
     line = [*TINY, "task=point_mass", "algo=kle3", f"run_dir={tmp_path / 'run'}", *overrides]

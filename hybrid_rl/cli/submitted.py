@@ -1,6 +1,7 @@
 """Progress of jobs that Submitit runs in other processes, on this machine or by Slurm."""
 
 import math
+import shutil
 import signal
 import time
 from collections.abc import Mapping, Sequence
@@ -14,6 +15,13 @@ from hybrid_rl.errors import UsageError, relative
 Result = dict[str, Any]  # of a job: code, line
 POLL = 0.5  # [s] between two checks of the jobs
 PATIENCE = 60.0  # [s] for the jobs to end, once the sweep is interrupted
+
+
+def require_slurm(launcher: str) -> None:
+    """Raise UsageError for a launcher that needs Slurm's commands where there are none."""
+    if launcher == "submitit_slurm" and not shutil.which("srun"):
+        line = "no srun here; start it where Slurm is, or try hydra/launcher=submitit_local"
+        raise UsageError(f"hydra/launcher={launcher}: {line}")
 
 
 def launch(
@@ -32,7 +40,7 @@ def launch(
     try:
         executor = _executor(launcher.params, launcher._EXECUTOR)
         sent = executor.map_array(launcher, *zip(*calls, strict=True))
-    except (FailedJobError, RuntimeError) as error:  # Slurm refuses them, or is not here
+    except FailedJobError as error:
         key = f"hydra/launcher=submitit_{launcher._EXECUTOR}"
         raise UsageError(f"{key}: the jobs could not be sent: {error}") from error
     running = dict(zip(numbers, sent, strict=True))

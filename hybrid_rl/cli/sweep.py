@@ -21,7 +21,7 @@ from hydra.core.plugins import Plugins
 from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl.cli import command
-from hybrid_rl.cli.submitted import Result, launch
+from hybrid_rl.cli.submitted import Result, launch, require_slurm
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import members as program
 from hybrid_rl.run.checkpoints import checkpoint
@@ -106,6 +106,7 @@ class Sweeper:
 
     def sweep(self, arguments: list[str]) -> Any:
         """Run all jobs; end the process with the highest exit code if one failed."""
+        require_slurm(str(self.config.hydra.runtime.choices["hydra/launcher"]))
         jobs = jobs_of(self._parsed(typed(arguments)))
         configs = self._checked(jobs)
         folder = Path(str(self.config.hydra.sweep.dir))

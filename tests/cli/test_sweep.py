@@ -223,7 +223,7 @@ def test_what_slurm_gets_and_refuses(tmp_path):
 def test_without_slurm_it_is_one_line(monkeypatch, capfd):
     monkeypatch.setenv("PATH", "")
     assert call_train(*SLURM) == 2
-    assert 'submitit_slurm: the jobs could not be sent: Could not detect "srun"' in only_line(capfd)
+    assert "submitit_slurm: no srun here; start it where Slurm is" in only_line(capfd)
 
 
 def test_a_launcher_that_is_not_installed_names_its_extra():
