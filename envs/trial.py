@@ -5,51 +5,37 @@
     def test_my_world():
         assert check(MyWorld()) == ()
 
-It is compared with `protocols.Env`, traced twice; then it makes ten random decisions. This takes a
-second, of which most is compiling; a world with a field `physics` is simulated by MuJoCo C, which
-compiles at once.
+JAX traces it and compares it with `protocols.Env`; nothing is compiled.
 """
 
 from dataclasses import is_dataclass, replace
 from numbers import Integral
 from typing import Any
 
-import jax
-import numpy as np
-
 from hybrid_rl.envs.mujoco import clock, physics
 from hybrid_rl.errors import GYMNASIUM, SourceOf, WorldError
 from hybrid_rl.protocols import BalancedEnv, Env
-from hybrid_rl.protocols.contract import Contract, check_indices, check_instance, program_text
+from hybrid_rl.protocols.contract import Contract, check_instance
 from hybrid_rl.types import Spec
 
-LARGE = 3000  # lines of a traced step; more would compile for many seconds, and are only traced
 
-
-def check(env: Any, decisions: int = 10) -> tuple[str, ...]:
+def check(env: Any) -> tuple[str, ...]:
     """Check that runs can use `env`; see `protocols.Env`.
 
-    decisions: how many random ones it makes; 0 compiles nothing.
-
     Returns:
-        Warnings about what is valid and probably a mistake, as an episode of one decision.
+        Warnings about what is valid and probably a mistake, as physics of another time step.
 
     Raises:
         WorldError: in one line: the file and line of the class or method, what it gives, and what
             it must give.
     """
-    world = SourceOf(env, WorldError)
     if is_dataclass(env) and getattr(env, "physics", None) in physics.IMPLEMENTATIONS:
         given: Any = env  # `replace` is typed for dataclasses alone
-        world = SourceOf(replace(given, physics="native"), WorldError)
-    env = world.object
+        env = replace(given, physics="native")  # MuJoCo C is traced at once
+    world = SourceOf(env, WorldError)
     protocol = BalancedEnv if callable(getattr(env, "equilibrium", None)) else Env
-    traces = Contract(env, protocol, _spec(world), WorldError).check()
-    reset, step = traces["reset"], traces["step"]
-    notes = tuple(f"{world.at('step')}: {x}" for x in clock.differs(env.spec.dt, step.jaxpr))
-    if not decisions or program_text(step).count("\n") > LARGE:
-        return notes
-    return (*notes, *_decide(world, reset, step, decisions))
+    step = Contract(env, protocol, _spec(world), WorldError).check()["step"]
+    return tuple(f"{world.at('step')}: {line}" for line in clock.differs(env.spec.dt, step.jaxpr))
 
 
 def _spec(world: SourceOf) -> Spec:
@@ -64,38 +50,3 @@ def _spec(world: SourceOf) -> Spec:
         must = "it must be Spec(obs=..., act=..., dt=...), two whole numbers above 0 and seconds"
         raise WorldError(f"{at}: spec is {spec}; {must}")
     return spec
-
-
-def _decide(world: SourceOf, reset: Any, step: Any, decisions: int) -> tuple[str, ...]:
-    """Make random decisions; a warning if each of them ended its episode.
-
-    reset, step: traced. Raises WorldError if a number is not finite, or an index out of range.
-    """
-    resetting, stepping = (traced.lower().compile() for traced in (reset, step))
-    rng, keys = np.random.default_rng(0), jax.random.split(jax.random.key(0), decisions + 1)
-    state, ended, tried = world.blamed("reset", resetting, keys[0]), 0, []
-    if not np.isfinite(state.obs).all():
-        raise WorldError(f"{world.at('reset')}: returned obs {state.obs}; it must be finite")
-    for i in range(1, decisions + 1):
-        action = rng.uniform(-1, 1, world.object.spec.act).astype(np.float32)
-        after = world.blamed("step", stepping, state, action)
-        tried.append((state, action))
-        for name in ("reward", "obs"):
-            value = np.asarray(getattr(after, name))
-            if not np.isfinite(value).all():
-                seen = f"after obs {_numbers(state.obs)} and action {_numbers(action)}"
-                line = f"{name} is {_numbers(value)} at decision {i}, {seen}"
-                raise WorldError(f"{world.at('step')}: {line}")
-        ended += bool(after.terminated)
-        kept = after.replace(info={**state.info, **after.info})
-        state = world.blamed("reset", resetting, keys[i]) if after.terminated else kept
-    check_indices(world, "reset", (keys[0],), (keys[1],))
-    check_indices(world, "step", *tried[::9])
-    line = f"every episode ended after one decision, of {decisions} tried"
-    return (f"{world.at('step')}: {line}",) if ended == decisions else ()
-
-
-def _numbers(value: Any) -> str:
-    """An array as a message shows it."""
-    text = np.array2string(np.asarray(value), precision=4, threshold=8, separator=", ")
-    return " ".join(text.split())

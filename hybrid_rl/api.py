@@ -1,15 +1,27 @@
-"""Environments and trained policies by name, from Python: `make` and `load`."""
+"""What Python calls: `make` an environment, `train` a run, `load` what was trained."""
 
-from collections.abc import Sequence
+import signal
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypedDict, Unpack
 
+from omegaconf import DictConfig
+
+from hybrid_rl.cli import interrupt
 from hybrid_rl.errors import UsageError
+from hybrid_rl.run import assembled, launch, members
+from hybrid_rl.run.job import Output
 from hybrid_rl.settings import build as config
+from hybrid_rl.settings.build import Run
+from hybrid_rl.settings.words import typed_values
+from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 
 if TYPE_CHECKING:
+    from hybrid_rl.analysis.curves import Curve
     from hybrid_rl.run.saved import Trained
+
+OnRow = Callable[[dict[str, Any]], Any]
 
 
 def make(task: str, overrides: Sequence[str] = (), config_dir: str | Path | None = None) -> Episode:
@@ -30,8 +42,6 @@ def make(task: str, overrides: Sequence[str] = (), config_dir: str | Path | None
     Raises:
         UsageError: for a task or a key that does not exist, or a value out of range.
     """
-    if isinstance(overrides, str):
-        raise UsageError(f'make("{task}", "{overrides}"): give a list, ["{overrides}"]')
     return config.episodes(config.load([f"task={task}", "algo=sac", *overrides], config_dir))
 
 
@@ -55,3 +65,95 @@ def load(run: str | Path) -> "Trained":
         return trained.load(run)
     known = ", ".join(trained.names())
     raise UsageError(f"load({name!r}): no run folder, and no policy; choose a file, or {known}")
+
+
+class Result(dict[str, Any]):
+    """The contents of summary.json, with the run's folder, its curves and its learners."""
+
+    def __init__(self, summary: Mapping[str, Any], run: Run | None = None) -> None:
+        super().__init__(summary)
+        self._run = run  # of an agent; None: config.yaml has the parts
+        self._folder = Path(self["run_dir"]).absolute()
+
+    @property
+    def folder(self) -> Path:
+        """The run folder, as an absolute path: it holds after the working folder changes."""
+        return self._folder
+
+    def curves(self, metric: str = "eval/return") -> "list[Curve]":
+        """The curve of a metric, with arrays; see hybrid_rl.curves."""
+        from hybrid_rl.analysis.curves import curves
+
+        return curves(self.folder, metric)
+
+    def load(self) -> "Trained":
+        """The learners at the newest checkpoint; `.policy(seed)` maps observations to actions."""
+        if self._run is None:
+            return load(self.folder)
+        from hybrid_rl.run import saved as trained
+
+        return trained.of(self._run, self.folder)
+
+
+class OfAgent(TypedDict, total=False):
+    """Settings of a run of an agent; run.assembled says what a key that is left out means."""
+
+    total_steps: int
+    seed: int
+    num_seeds: int
+    run_dir: str | Path | None
+    name: str | None
+    log_every: int | None
+    eval_every: int | None
+    eval_episodes: int
+    checkpoint_every: int | None
+
+
+def train(
+    method: Sequence[str] | DictConfig | Agent = (),
+    *,
+    config_dir: str | Path | None = None,
+    on_row: OnRow | None = None,
+    progress: bool = True,
+    **settings: Unpack[OfAgent],
+) -> Result:
+    """Train `method` to its end; returns what summary.json holds.
+
+        train(["task=pendulum", "algo=sac", "num_seeds=2"], on_row=print)
+        train(["resume=runs/pendulum/sac/TIME", "total_steps=20000"])
+        train(Agent(...), total_steps=10_000, num_seeds=5, run_dir="runs/mine")
+
+    A signal, such as SIGTERM, ends it with a checkpoint, and then has its effect on the program.
+
+    Args:
+        method: what follows the command, as a list; a configuration of `compose`; or an agent,
+            which continues where run_dir holds its checkpoints.
+        config_dir: of a list, a folder as for `--config-dir`.
+        on_row: called with each new row of metrics.jsonl, a dictionary. Once it returns False, or
+            raises, the run ends with a checkpoint, and "finished" of the result is False.
+        progress: False prints nothing.
+        settings: of an agent alone (hybrid_rl.run.assembled.run_of): total_steps, seed, num_seeds,
+            run_dir, name, log_every, eval_every, eval_episodes, checkpoint_every.
+
+    Raises:
+        KeyboardInterrupt: after Ctrl-C and a checkpoint.
+        UsageError: if the configuration makes no run.
+        DivergenceError: if every learner reached NaN or infinity.
+        CheckpointError: if a checkpoint could not be written or read.
+    """
+    output = Output(on_row, progress)
+    if isinstance(method, Agent):
+        values: dict[str, Any] = {**settings}
+        run = assembled.run_of(method, **values)
+        result = Result(launch.train_built(run, interrupt.as_call, output), run)
+    else:
+        if settings:
+            texts = ", ".join(f'"{key}={value}"' for key, value in settings.items())
+            raise UsageError(f"train: keywords are for an agent; write train([{texts}, ...])")
+        given = {} if isinstance(method, DictConfig) else typed_values(method)
+        runs = members.load(method, config_dir)
+        result = Result(launch.train(runs, given, interrupt.as_call, output))
+    if result["signal"] is not None:
+        signal.raise_signal(result["signal"])
+    output.raise_problem()
+    return result

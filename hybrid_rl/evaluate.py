@@ -13,8 +13,7 @@ differs from the run's is such a change, too.
 With reward=NAME, of conf/reward, the world pays another reward, and a planner maximises it in the
 model that the run has learned; nothing is trained. planner=NAME is another planner, and
 planner.KEY=VALUE alone another value of a key of the one that the run has. With imagine=policy the
-policy goes on learning in that model before it acts, for seconds. Below the table is the return of
-the policy alone.
+policy goes on learning in that model before it acts, for seconds.
 
 With constraint=NAME, of conf/constraint, the world counts the decisions that violate it, and the
 planner keeps it; the return stays as it is.
@@ -52,15 +51,13 @@ from hybrid_rl.cli.arguments import (
     read,
     whole,
 )
-from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.errors import UsageError
-from hybrid_rl.networks import precision
+from hybrid_rl.networks.precision import PRECISIONS, choose, current
 from hybrid_rl.run.evaluated import evaluate, report
 from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.folder import members
 from hybrid_rl.run.logs.progress import say
 from hybrid_rl.run.retarget import load_changed
-from hybrid_rl.run.saved import Trained
 
 SILENCE = 10  # [s] between two lines of progress
 ARGUMENTS = (
@@ -68,9 +65,7 @@ ARGUMENTS = (
     POLICY,
     *GOAL,
     CONFIG_DIR,
-    Argument(
-        "precision", "", "of networks; empty: as in training", one_of("", *precision.PRECISIONS)
-    ),
+    Argument("precision", "", "of networks; empty: as in training", one_of("", *PRECISIONS)),
     Argument("episodes", 10, "episodes of each seed", whole()),
     Argument("mode", "full", "full: planner and policy; policy or planner: one alone", MODE),
 )
@@ -88,49 +83,29 @@ def _evaluate(given: dict[str, Any], changes: dict[str, str]) -> None:
     """Print and write the table of one run or policy."""
     mode, episodes, name = given["mode"], given["episodes"], given["run"] or given["policy"]
     trained, changes = load_changed(given, changes)
-    own = precision.current()
+    own = current()
     if given["precision"]:
-        precision.choose(given["precision"])
-        changes |= {"precision": now} if (now := precision.current()) != own else {}
+        choose(given["precision"])
+        changes |= {"precision": now} if (now := current()) != own else {}
     print(*(f"{note}\n" for note in trained.notes), sep="", end="")
     trained.learner(mode=mode, world=True)  # before anything is compiled
     each = f"{plural(episodes, 'episode')} a seed"
     say(f"compiling, then {each} ...")  # of a planner, a minute
     got = evaluate(trained, mode, episodes, _progress(trained.episode.steps))
-    values = report(trained, mode, got)
-    values |= {"changes": changes, "precision": precision.current()}
-    print(f"{name}, mode {mode}, step {trained.step:,}", *_words(changes), sep=", ")
+    values = report(trained, mode, got) | {"changes": changes, "precision": current()}
+    words = [f"{key}={value}" for key, value in changes.items()]
+    print(f"{name}, mode {mode}, step {trained.step:,}", *words, sep=", ")
     Console().print(_table(values))
     if not np.isfinite(got["return"]).all():
         paid = f"reward={given['reward']}" if given["reward"] else "the world's rewards"
         raise UsageError(f"{name}: a return is not finite: see {paid} and the controller's actions")
-    if line := _policy_alone(trained, given):
-        print(line)
     if given["run"]:
-        out = Path(given["run"]) / f"evaluation_{'_'.join([mode, *_words(changes)])}.json"
+        out = Path(given["run"]) / f"evaluation_{'_'.join([mode, *words])}.json"
         try:
             write_text(out, json.dumps(values, indent=1) + "\n")
             print(f"{each}; written to {out}")
         except OSError as error:  # the run of somebody else, say
             print(f"{each}; not written: {out}: {error.strerror}")
-
-
-def _words(changes: dict[str, str]) -> list[str]:
-    return [f"{key}={value}" for key, value in changes.items()]
-
-
-def _policy_alone(trained: Trained, given: dict[str, Any]) -> str:
-    """The line that a planner's return on a new goal is compared with, or ""."""
-    full, policy = trained.controllers.get("full"), trained.controllers.get("policy")
-    new = any(given[argument.name] for argument in GOAL)
-    if not new or given["mode"] != "full" or policy in (None, full):
-        return ""
-    if isinstance(trained.episode.env, External):
-        return "the policy alone: mode=policy"
-    got = evaluate(trained, "policy", given["episodes"])
-    violations = got.get("violations")
-    more = "" if violations is None else f", {violations.mean():,.1f} violations"
-    return f"the policy alone: {got['return'].mean():,.1f}{more} (mode=policy)"
 
 
 def _progress(steps: int) -> Callable[[int], None]:

@@ -1,22 +1,19 @@
 """A trained policy or planner as a file that runs without hybrid_rl.
 
     python -m hybrid_rl.export run=DIR out=policy.stablehlo
-    python -m hybrid_rl.export run=DIR out=policy.npz
     python -m hybrid_rl.export run=DIR mode=full out=planner.stablehlo
     python -m hybrid_rl.export policy=halfcheetah out=policy.onnx
-    python -m hybrid_rl.export policy=halfcheetah out=policy.h
 
 A .stablehlo is a program of JAX that runs where jax is installed, f = jax.export.deserialize(bytes)
 with action = f.call(obs) for a policy. A controller that plans is
 
     action, state = f.call(obs, state, key)
 
-state: [w] uint32, zeros at the start of an episode; key: [2] uint32, others at each decision. The
-other formats hold the layers of a multilayer perceptron, or of a linear policy: a .npz, with a
-Python file next to it that has act(obs) in NumPy; an .onnx, obs [N, o] -> action [N, m]
-(`pip install "hybrid_rl[onnx]"`); a .h, a function of C99. All include the parameters and the
-normalisation of the observations [o]. Actions are [m] in [-1, 1], of a Gymnasium environment or a
-robot within its bounds, without exploration.
+state: [w] uint32, zeros at the start of an episode; key: [2] uint32, others at each decision. An
+.onnx (`pip install "hybrid_rl[onnx]"`), obs [N, o] -> action [N, m], holds the layers of a
+multilayer perceptron or of a linear policy. Both include the parameters and the normalisation of
+the observations [o]. Actions are [m] in [-1, 1], of a Gymnasium environment or a robot within its
+bounds, without exploration.
 """
 
 if __name__ == "__main__":
@@ -26,15 +23,14 @@ if __name__ == "__main__":
 
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import POLICY, Argument, output, read, several, whole
-from hybrid_rl.errors import UsageError, printable
+from hybrid_rl.errors import UsageError, install, printable
 
-SUFFIXES = (".stablehlo", ".npz", ".onnx", ".h")
-SHOWN = ".stablehlo, .npz, .onnx or .h"
+SUFFIXES = (".stablehlo", ".onnx")
 PLATFORMS = ("cpu", "cuda", "rocm", "tpu")
 ARGUMENTS = (
     Argument("run", "", "folder of the run"),
     POLICY,
-    Argument("out", "", f"the file: {SHOWN}", needed=f"out=policy with {SHOWN}"),
+    Argument("out", "", "the file", needed="out=FILE.stablehlo or out=FILE.onnx"),
     Argument("mode", "policy", "policy: alone; full or planner: one that plans (.stablehlo)"),
     Argument("seed", None, "of a learner of the run; empty: the first", whole(least=0)),
     Argument("platforms", ["cpu"], f"of a .stablehlo: {', '.join(PLATFORMS)}", several(*PLATFORMS)),
@@ -44,26 +40,25 @@ ARGUMENTS = (
 def main() -> None:
     """The command."""
     given, _ = read(__doc__, ARGUMENTS)
-    others = (".py",) if given["out"].endswith(".npz") else ()
-    out = output("out", given["out"], SUFFIXES, *others)
+    out = output("out", given["out"], SUFFIXES)
+    from hybrid_rl.data.layers import save_onnx
     from hybrid_rl.files.atomic import replacing
     from hybrid_rl.run import exported  # imports JAX, for seconds
     from hybrid_rl.run.saved import load_named
 
     trained = load_named(given)
-    if given["mode"] == "policy" and "policy" not in trained.controllers:
-        line = "the run has no policy, only a planner; give mode=full out=FILE.stablehlo"
-        raise UsageError(f"mode=policy: {line}")
     controller, params = trained.learner(given["seed"], given["mode"])
     spec = trained.episode.spec
-    if out.suffix == ".npz":
-        exported.check_script(out)
     if parts := getattr(trained.episode.env, "parts", ""):
         flat = "gymnasium.spaces.flatten(env.observation_space, obs)"
         print(f"obs [{spec.obs}]: {printable(parts)}; {flat} makes it")
-    if out.suffix != ".stablehlo":
+    if out.suffix == ".onnx":
         net = exported.layers(spec, controller, params)._replace(span=trained.span)
-        print(exported.saved(out, trained.task, spec, net))
+        try:
+            save_onnx(out, trained.task, spec, net)
+        except ImportError as error:
+            raise UsageError(f"out={out}: needs onnx; {install('onnx')}") from error
+        print(f'{out}: onnxruntime.InferenceSession("{out.name}").run(None, {{"obs": obs[None]}})')
         return
     made = exported.program(spec, controller, params, given["platforms"], trained.span)
     with replacing(out) as draft:

@@ -14,7 +14,7 @@ In a field of floats whole numbers become floats, so that all values give arrays
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, fields, is_dataclass
-from numbers import Real
+from numbers import Integral, Real
 from types import NoneType, UnionType
 from typing import (
     Annotated,
@@ -86,6 +86,12 @@ def among(*values: float) -> Must:
 
 Fail = Callable[..., NoReturn]  # the words of what is wrong, and the method that is missing
 NO_PART = bool | int | float | str | list | tuple | Mapping
+PLAIN = {  # type of a field -> what it accepts, its name in messages
+    bool: (bool, "true or false"),
+    int: (Integral, "a whole number"),
+    float: (Real, "a number"),
+    str: (str, "a word"),
+}
 
 
 def _whole(value: Any) -> bool:
@@ -149,6 +155,12 @@ def choices(kind: Any) -> tuple[Any, ...]:
     return get_args(kind) if get_origin(kind) in (Union, UnionType) else (kind,)
 
 
+def check_all(part: Any) -> None:
+    """Raise FieldError for a value that a field of any dataclass does not accept."""
+    for field in fields(part) if is_dataclass(part) else ():
+        check(part, field.name, field.type)
+
+
 def method_of(kind: Any) -> str:
     """The method that a value of this type must have; empty: none."""
     return get_args(kind)[1].has if get_origin(kind) is Annotated else ""
@@ -176,10 +188,13 @@ def _fitted(kind: Any, value: Any, fail: Fail, entry: bool = False) -> Any:
     if len(kinds) > 1:  # a list has the rules of lists, another value the others
         lists = _listed(value)
         kinds = [each for each in kinds if (get_origin(plain(each)) is tuple) == lists] or kinds
+    if not (entry or {*kinds} - {*PLAIN} or any(_is(kind, value) for kind in kinds)):
+        fail(f"must be {' or '.join(PLAIN[kind][1] for kind in kinds)}")
     for kind in kinds:
         origin, of = get_origin(kind), get_args(kind)
         if origin is Annotated:
-            value = _fitted(of[0], value, fail)
+            if of[0] is not int:  # its rules say that it is a whole number
+                value = _fitted(of[0], value, fail)
             _obey(of[1], value, fail, of[0] in (int, float))
         elif origin is Literal:
             if value not in of:
@@ -196,6 +211,13 @@ def _fitted(kind: Any, value: Any, fail: Fail, entry: bool = False) -> Any:
                 fail("must hold finite numbers")
             value = float(value) if type(value) is int else value
     return value
+
+
+def _is(kind: type, value: Any) -> bool:
+    """Whether a value is of a plain type; arrays, as of a traced number, are of each."""
+    if not isinstance(value, NO_PART | None):
+        return True
+    return isinstance(value, PLAIN[kind][0]) and (kind is bool or not isinstance(value, bool))
 
 
 def _obey(must: Must, value: Any, fail: Fail, number: bool) -> None:

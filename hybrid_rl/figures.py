@@ -57,20 +57,23 @@ def main() -> None:
     if set(HELP) & set(line) and not any(text.startswith("study=") for text in line):
         doc = f"{inspect.cleandoc(__doc__ or '')}\n\nStudies (study=NAME):\n{_listing(known)}"
         doc += f"\n\nThe arguments below are those of study={DEFAULT}."
-    of_all, again = (replace(ARGUMENTS[0], default=name), *ARGUMENTS[1:]), hasattr(study, "draw")
+    of_all, again = (
+        (replace(ARGUMENTS[0], default=name), *ARGUMENTS[1:]),
+        getattr(study, "draw", None),
+    )
     if again and any(text.startswith("from=") for text in line):
         values, _ = read(doc, (*of_all, FROM))
-        out = output("out", values["out"], SUFFIXES, ".json")
+        out = output("out", values["out"], SUFFIXES)
         with styled():
-            picture, numbers = redrawn(values["from"], "from", study.draw)
+            picture, numbers = redrawn(values["from"], "from", again)
         save(picture, numbers, out)
         print(out)
         return
-    values, _ = read(doc, (*of_all, *(FROM,) * again, *arguments(study)))
+    values, _ = read(doc, (*of_all, *([FROM] if again else []), *arguments(study)))
     values.pop("from", None)
     table = getattr(study, "table", None)
     suffixes = SUFFIXES if table is None else (*SUFFIXES, TABLE)
-    out = output("out", values.pop("out"), suffixes, ".json")
+    out = output("out", values.pop("out"), suffixes)
     del values["study"]
     prepare(load([]))
     with styled():

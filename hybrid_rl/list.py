@@ -5,8 +5,7 @@
 
 The description is the first comment of the YAML file. A comment "Needs an analytic task." of a
 method is listed as [needs an analytic task], and "Has analytic dynamics." of a task likewise.
-With config_dir=DIR, or --config-dir DIR (two words) as for `train`, the entries of that folder are
-listed, too.
+With config_dir=DIR the entries of that folder are listed, too.
 """
 
 if __name__ == "__main__":
@@ -14,7 +13,6 @@ if __name__ == "__main__":
 
     interrupt.install()
 
-import sys
 from pathlib import Path
 
 from hybrid_rl.cli import command
@@ -65,9 +63,6 @@ def _row(name: str, path: Path, width: int) -> str:
 
 def main() -> None:
     """The command."""
-    line = sys.argv[1:]
-    if line[:1] == ["--config-dir"] and len(line) == 2:  # as `train` takes it
-        sys.argv[1:] = [f"config_dir={line[1]}"]
     given, _ = read(__doc__, ARGUMENTS)
     folders = [CONF, THESIS]
     if given["config_dir"]:

@@ -3,21 +3,17 @@
     python -m hybrid_rl.render run=DIR [out=DIR/video.mp4] [mode=full] [seed=] [episode_steps=]
     python -m hybrid_rl.render policy=NAME [out=NAME.mp4] [episode_steps=]
     python -m hybrid_rl.render policy=halfcheetah reward=speed reward.target=2
-    python -m hybrid_rl.render run=DIR mode=training [seed=] [out=X.mp4]
     python -m hybrid_rl.render task=T [out=T.mp4] [seed=0] [episode_steps=] [env.KEY=VALUE ...]
 
 `out` ends in .mp4 or .gif for a video, in .png for the picture halfway through the episode, or
-with at=0,20,40 for those after so many decisions, side by side.
+with at=0,20,40 for those after so many decisions, side by side. A Gymnasium environment draws
+itself, in its own size and without at=.
 
 The episode is one of the run's own evaluation, the first unless episode=N: same key, no
 exploration. policy=NAME is a trained policy of policies/, or a file. reward, planner, env.KEY and
 episode.KEY are as with `evaluate`. With task=T the task's expert acts, which is scripted. Without a
 graphics card a video shows the first 200 pictures, which take half a minute; episode_steps=N shows
 N decisions.
-
-mode=training is the first episode of training of a method that learns a belief over two
-coordinates, such as a map of contacts. A panel, as wide as the picture is high, shows what the
-belief had learned by then. A .png is the picture at the end.
 """
 
 if __name__ == "__main__":
@@ -47,7 +43,6 @@ from hybrid_rl.run.logs.progress import say
 
 if TYPE_CHECKING:
     from hybrid_rl.analysis.film import Film
-    from hybrid_rl.run.saved import Trained
     from hybrid_rl.training.episode import Episode
 
 SIZE = (640, 480)  # [pixels]
@@ -60,7 +55,6 @@ ARGUMENTS = (
     Argument("width", SIZE[0], "of the picture, in pixels", whole(even=True)),
     Argument("height", SIZE[1], "of the picture, in pixels", whole(even=True)),
 )
-FAR = 0.01  # of an observation in a replayed scene; more is reported
 
 
 def main() -> None:
@@ -68,54 +62,46 @@ def main() -> None:
     given, changes = read(__doc__, ARGUMENTS, ROBOT_CHANGES)
     named = robot(given, changes)
     from hybrid_rl.analysis import film  # imports JAX, for seconds
-    from hybrid_rl.analysis.drawing import SUFFIXES
+    from hybrid_rl.envs.adapters.external import External
     from hybrid_rl.envs.mujoco import offscreen
     from hybrid_rl.run.recording import scripted_expert
     from hybrid_rl.run.retarget import load_changed
     from hybrid_rl.training.rollout import evaluation_keys
 
-    default = f"{named}/video.mp4" if given["run"] else f"{Path(named).stem}.mp4"
-    out = Path(given["out"] or default)
-    if given["out"] or out.parent.is_dir():  # a run that is not there is named below
-        output("out", out, SUFFIXES)
-    if given["at"] and out.suffix != ".png":
-        raise UsageError(f"at={','.join(map(str, given['at']))}: needs out=FILE.png")
+    out = _out(given, named)
     offscreen.backend()  # raises before minutes of work
     offscreen.check_size(given["width"], given["height"])
-    if given["mode"] == "training" and given["run"]:
-        _draw_training(given, out)
-    elif given["task"]:
+    seed, number, steps = given["seed"], given["episode"], given["episode_steps"]
+    if given["task"]:
         world, controller, params = scripted_expert(given, changes)
-        begun = replace(world, steps=film.length(world, given["episode_steps"], out))
-        key = evaluation_keys(given["seed"] or 0, given["episode"] + 1)[-1]
-        say("compiling an episode ...")
-        shown = film.film(begun, controller, params, key)
-        _draw(world, shown, given, out, "scripted expert")
+        seed, by = seed or 0, "scripted expert"
     else:
         trained = load_changed(given, changes)[0]
         print(*(f"{note}\n" for note in trained.notes), sep="", end="")
-        _draw_trained(trained, given, out)
-
-
-def _draw_trained(trained: "Trained", given: dict[str, Any], out: Path) -> None:
-    """Draw an episode of a learner."""
-    from hybrid_rl.analysis import film
-    from hybrid_rl.envs.adapters.external import External
-
-    which = (given["mode"], given["seed"])
-    if isinstance(trained.episode.env, External):
-        if given["at"] or (given["width"], given["height"]) != SIZE:
-            line = "a Gymnasium environment draws itself in its own size"
-            raise UsageError(f"at, width, height: {line}")
-        steps, number = given["episode_steps"], given["episode"]
-        pictures, total = film.draw_outside(trained, *which, steps, number, out)
-        print(f"{out}: {pictures} pictures, return {total:,.1f}, step {trained.step:,}")
+        world = trained.episode
+        controller, params = trained.learner(seed, given["mode"], world=True)
+        seed, by = trained.seeds[0] if seed is None else seed, f"step {trained.step:,}"
+    key = evaluation_keys(seed, number + 1)[-1]
+    if isinstance(world.env, External):
+        pictures, total = film.draw_outside(world, controller, params, key, steps, out)
+        print(f"{out}: {pictures} pictures, return {total:,.1f}, {by}")
         return
-    trained.learner(given["seed"], given["mode"], world=True)  # refuses what it lacks
     say("compiling an episode ...")  # of a planner, a minute
-    steps = film.length(trained.episode, given["episode_steps"], out)
-    shown = film.episode(trained, *which, steps, given["episode"])
-    _draw(trained.episode, shown, given, out, f"step {trained.step:,}")
+    begun = replace(world, steps=film.length(world, steps, out))
+    _draw(world, film.film(begun, controller, params, key), given, out, by)
+
+
+def _out(given: dict[str, Any], named: str) -> Path:
+    """The file to write."""
+    from hybrid_rl.analysis.drawing import SUFFIXES
+
+    default = f"{named}/video.mp4" if given["run"] else f"{Path(named).stem}.mp4"
+    out = Path(given["out"] or default)
+    if given["out"] or out.parent.is_dir():  # a run that is not there is named later
+        output("out", out, SUFFIXES)
+    if given["at"] and out.suffix != ".png":
+        raise UsageError(f"at={','.join(map(str, given['at']))}: needs out=FILE.png")
+    return out
 
 
 def _draw(world: "Episode", shown: "Film", given: dict[str, Any], out: Path, by: str) -> None:
@@ -135,23 +121,6 @@ def _draw(world: "Episode", shown: "Film", given: dict[str, Any], out: Path, by:
     print(f"{out}: {decisions} decisions, return {shown.total:,.1f}{ended}, {by}")
     if not given["episode_steps"] and decisions == film.length(world, 0, out) < world.steps:
         print(f"the beginning, as there is no graphics card; all: episode_steps={world.steps}")
-
-
-def _draw_training(given: dict[str, Any], out: Path) -> None:
-    """Draw the first episode of training, with the belief at the right."""
-    from hybrid_rl.analysis.drawing import draw
-    from hybrid_rl.envs.mujoco.scenery import check_drawable, scene_of
-    from hybrid_rl.thesis.studies import belief_video as video
-
-    folder, seed, steps = Path(given["run"]), given["seed"], given["episode_steps"]
-    shown = video.film(folder, seed, steps, given["height"], video.MOST[out.suffix])
-    check_drawable(shown.world)
-    size = given["width"], given["height"]
-    draw(scene_of(shown.world), shown.poses, out, shown.fps, *size, shown.panel)
-    speed = "" if out.suffix == ".png" else f", {shown.speed:.2g} times real time"
-    print(f"{out}: {shown.decisions} decisions, return {shown.total:,.1f}, of training{speed}")
-    if shown.apart > FAR:
-        print(f"the scene differs by up to {shown.apart:.2g} from the recorded observations")
 
 
 if __name__ == "__main__":

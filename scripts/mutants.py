@@ -96,7 +96,7 @@ MUTANTS = {
     ),
     "a misspelt override is ignored": Mutant(
         "hybrid_rl/settings/build.py",
-        "if all(path in each for each in lost):",
+        "if select(raw, path) is LACKING:",
         "if False:",
         "tests/cli tests/test_errors.py",
     ),

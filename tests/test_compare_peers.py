@@ -105,8 +105,6 @@ def test_the_file_has_what_peers_json_has_of_a_method():
 @pytest.mark.parametrize(
     ("words", "line"),
     [
-        (["library=torch"], "choose one of sbx, stable_baselines3"),
-        (["method="], "method: not given"),
         (["env=Nothing-v1"], "env=Nothing-v1: "),
         (["total_steps=400"], "total_steps=400: must be 1000 or more"),
     ],
@@ -114,13 +112,3 @@ def test_the_file_has_what_peers_json_has_of_a_method():
 def test_a_wrong_argument_is_one_line(words, line, peer, tmp_path, capfd):
     assert main(*GIVEN, f"out={tmp_path}/out.json", *words) == 2
     assert line in only_line(capfd)
-
-
-@pytest.mark.parametrize(("library", "package"), compare_peers.LIBRARIES.items())
-def test_a_missing_library_is_one_line_that_installs_it(library, package, monkeypatch, capfd):
-    monkeypatch.setitem(sys.modules, library, None)
-    assert main(f"library={library}", *GIVEN, "out=out.json") == 2
-    assert (
-        only_line(capfd).rstrip()
-        == f"hybrid_rl: library={library}: not installed; pip install {package}"
-    )

@@ -2,18 +2,16 @@
 
 import json
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from tiny import TINY, call, call_train, only_line, run
+from tiny import TINY, call, call_train, run
 from tiny import demonstrate as recorded
 
 from hybrid_rl import demonstrate, evaluate, train
 from hybrid_rl.cli import command
 from hybrid_rl.constraints.effort import Effort
 from hybrid_rl.data.demonstrations import load
-from hybrid_rl.envs.adapters.unstepped import Unstepped
 from hybrid_rl.envs.experts.push import PushController
 from hybrid_rl.envs.sawyer_push import SawyerPush
 from hybrid_rl.run.saved import load as load_run
@@ -77,7 +75,7 @@ def test_the_task_is_changed_as_in_training(tmp_path, capsys):
         assert call(lambda: command.run(demonstrate.main), *line, wrong) == 2
     printed = capsys.readouterr().err
     assert "env.sped: sac has no such key" in printed
-    assert "planner.samples=3: unknown argument; give key=value with task" in printed
+    assert "planner.samples=3: unknown argument; give KEY=VALUE with task" in printed
 
 
 def test_a_task_of_ones_own_has_an_expert_too(tmp_path):
@@ -137,10 +135,3 @@ def test_an_expert_that_does_not_fit_is_named(given, line, tmp_path, capsys):
     assert call(lambda: command.run(demonstrate.main), *main) == 2
     assert line in capsys.readouterr().err
     assert not out.exists()
-
-
-def test_a_run_in_a_world_outside_jax_is_one_line(monkeypatch, capfd):
-    outside = SimpleNamespace(episode=SimpleNamespace(env=Unstepped()))
-    monkeypatch.setattr(demonstrate, "load", lambda folder: outside)
-    assert call(lambda: command.run(demonstrate.main), "run=x", "out=y.npz") == 2
-    assert "run=x: its world steps outside JAX" in only_line(capfd)

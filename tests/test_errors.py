@@ -5,7 +5,6 @@ import subprocess
 import sys
 from importlib import import_module
 
-import jax
 import pytest
 from omegaconf import OmegaConf
 from tiny import TINY, call, call_train, contents, only_line, run
@@ -31,116 +30,59 @@ MAINS = {
 COUNT = "must be a whole number, 1 or more"
 NO_KEY = "hybrid_stochastic has no such key"
 USAGE = [  # overrides of train, after task=pendulum algo=hybrid_stochastic; words of the line
-    # names
-    ("task=cartpool", "task=cartpool: unknown; choose one of ant, cart_double_pendulum"),
-    ("task=pendulm", "walker2d; did you mean pendulum?"),
+    ("task=pendulm", "task=pendulm: unknown; choose one of ant, "),
     ("task=Hopper-v5", "walker2d; did you mean task=gymnasium env.id=Hopper-v5?"),
-    ("task=mine:Env", "walker2d; did you mean task=gymnasium env.make=mine:Env?"),
-    ("task=null", "task=null: unknown; choose one of ant, "),
-    ("env=pendulum", "env=pendulum: must be a group of keys; did you mean task=pendulum?"),
     ("algo=SAC", "in `python -m hybrid_rl.list`; did you mean sac?"),
     ("algo=dqn", "your own algo/dqn.yaml needs config_dir=FOLDER"),
-    ("experiment=thesis/fig_33", "`python -m hybrid_rl.list`; did you mean thesis/fig_3_3?"),
-    ("objective=foo", "objective=foo: unknown; choose one of disagreement, fisher, "),
-    ("hydra/launcher=joblib", "hydra/launcher=joblib: unknown; choose one of basic, submitit_"),
-    # keys
+    ("env=pendulum", "env=pendulum: must be a group of keys; did you mean task=pendulum?"),
     ("sed=3", f"sed: {NO_KEY}; did you mean seed?"),
     ("++planner.horizn=3", f"planner.horizn: {NO_KEY}; did you mean planner.horizon?"),
-    ("experment=thesis/fig_3_3", f"experment: {NO_KEY}; did you mean experiment?"),
-    ("gamma=0.9", f"gamma: {NO_KEY}; did you mean policy_learner.discount?"),
-    ("total_timesteps=9", f"{NO_KEY}; did you mean total_steps?"),
-    (
-        "algo=sac learning_rate=1",
-        "sac has no such key; did you mean policy_learner.policy_learning",
-    ),
     ("algo=sac planner.horizon=7", "planner.horizon: sac has no such key"),
     ("algo=nn_mppi proposal=mixture", "nn_mppi has no such key; did you mean model_proposal?"),
     ("policy.target=1", f"policy.target: {NO_KEY}; policy has hidden, acti"),
     ("xyz=3", f"xyz: {NO_KEY}; `--cfg job` shows every key"),
-    ("episode.late=1", f"episode.late: {NO_KEY}; episode has delay"),
     ("seed=${seeds}", "seed: Interpolation key 'seeds' not found"),
-    ("controller@mine=goal", "Could not override 'controller@mine'"),
-    ("objective=weighted_sum", "objective.terms.task: Interpolation to parent node detected"),
-    # how it is written
-    ("total_steps 100", "total_steps: is no KEY=VALUE; write total_steps=100"),
-    ("task = pendulum", "task: is no KEY=VALUE; write task=pendulum"),
-    ("--total-steps 10", "--total-steps: is no KEY=VALUE; write total_steps=10"),
-    (
-        "eval_modes=[full, policy]",
-        "policy]: is no KEY=VALUE; write a list in quotes: 'KEY=[A, B]'",
-    ),
+    ("total_steps 100", "total_steps: write KEY=VALUE, a list in quotes, 'KEY=[A, B]'"),
     ("run_dir=läufe", "run_dir=läufe: cannot be read; write key=value, text as 'key="),
     ("task=pendulum,cartpole", "Ambiguous value for argument 'task=pendulum,cartpole'; 1. To "),
-    ("hydra/launcher=submitit_slurm", "submitit_slurm: sends the jobs of a sweep; add -m"),
-    ("algo=sac -m seed=-1,0", "seed=-1: must be a whole number, from 0 to 4294967295 (job 0: seed"),
-    # values
+    ("hydra/launcher=submitit_slurm", "submitit_slurm: is for the jobs of a sweep; add -m"),
     ("num_envs=2.5", f"num_envs=2.5: {COUNT}"),
     ("seed=4294967290 num_seeds=8", "must be a whole number, from 0 to 4294967288"),
-    (
-        "total_steps=2147483648",
-        "total_steps=2147483648: must be a whole number, from 1 to 2147483647",
-    ),
     ("planner.samples=0", f"planner.samples=0: {COUNT}"),
-    ("algo=nn_mppi model_planner.temperature=0", "model_planner.temperature=0: must be above 0"),
     ("planner.temperature=hot", "planner.temperature=hot: must be a number"),
-    ("policy_learner.tau=nan", "policy_learner.tau=nan: must be finite"),
-    ("policy_learner.updates=1.5", "policy_learner.updates=1.5: with num_envs=1 this gives 1.5"),
+    ("task=cartpole env.reward=foo", "env.reward=foo: choose one of cos, dm_control"),
+    ("policy_learner.tau=2", "policy_learner.tau=2: must lie in (0, 1]"),
     ("policy.hidden=16", "policy.hidden=16: must be a list"),
     ("planner.policy.hidden=[3]", "planner.policy={'hidden': [3]}: must be a part, or null"),
-    ("task=cartpole env.reward=foo", "env.reward=foo: choose one of cos, dm_control"),
-    ("eval_modes=[full,both]", "eval_modes=['full', 'both']: must be a list of full"),
-    ("checkpoint_replay=0", "checkpoint_replay=0: choose one of true, false"),
+    ("eval_modes=[full,both]", "eval_modes=both: choose one of full, policy, planner"),
     ("physics=bullet", "physics=bullet: choose one of auto, native, mjx, warp"),
     ("task=cartpole physics=warp", "physics=warp: must have an NVIDIA GPU"),
     ("algo=sac replay.capacity=9", "replay.capacity=9: holds less than one batch, policy_learner."),
-    ("replay.capacity=1000000000 total_steps=2147483647", "learners would take"),
     ("run_dir=/dev/null/run", "run_dir=/dev/null/run: cannot be written to (Not a directory)"),
-    # methods and tasks that do not fit
     ("task=halfcheetah algo=kle3", "task=halfcheetah: kle3 needs an analytic environment; `python"),
-    ("algo=koopman_track", "koopman_track needs an environment with a reference; `python"),
-    ("algo=localisation", "free_body.acceleration: Interpolation key 'env.acceleration' not found"),
-    ("algo=nn_mppi planner=gradient", "policy=TanhGaussian: GradientController acts by it, and no"),
-    ("algo=disagreement model=gaussian", "information.model=Gaussian: needs an ensemble"),
-    ("algo=kle3 settings=light", "In 'settings/light': Could not override 'proposal'"),
     ("task=gymnasium algo=mppi", "mppi plans on the true dynamics, and this task st"),
-    ("task=gymnasium env.id=Pendulum-v1 reward=speed", "task=Pendulum-v1: reward needs an envi"),
-    ("algo=koopman_active features.terms=[[0,9]]", "features.terms=[0, 9]: has an index above 2"),
-    # files and folders
+    ("algo=nn_mppi planner=gradient", "policy=TanhGaussian: GradientController acts by it, and no"),
+    ("algo=kle3 settings=light", "In 'settings/light': Could not override 'proposal'"),
     ("algo=bc", "demonstrations=demonstrations/pendulum.npz: no such file; `python -m hybrid_rl"),
-    ("pretrain=3", "pretrain=3: the memory has no demonstrations to learn from"),
     ("resume=nowhere", "resume=nowhere: no run folder there"),
 ]
 OTHERS = [  # command and its arguments, words of the line
     ("evaluate", "run, policy: give one of them"),
-    ("evaluate {trained}", "trained: write run=/"),
-    ("evaluate run = {trained}", "run: write run="),
+    ("evaluate {trained}", "unknown argument; give KEY=VALUE with run, policy, "),
     ("evaluate run=nowhere", "run=nowhere: no run folder there"),
     ("evaluate run={begun}", "holds no checkpoint yet"),
     ("evaluate policy=cheetah", "policy=cheetah: no such file; choose a file, or one of "),
-    ("evaluate run=nowhere mode=both", "mode=both: choose one of full, policy, planner"),
     ("evaluate run={trained} mode=planner", "mode=planner: the run has full, policy"),
-    ("evaluate run={trained} episodes=2.5", f"episodes=2.5: {COUNT}"),
-    (
-        "evaluate run={trained} env.gravity=1",
-        "Pendulum.__init__() got an unexpected keyword argument 'gravity'",
-    ),
-    ("evaluate policy=cartpole env.reward=up", "env.reward=up: choose one of cos"),
-    ("demonstrate", "task, run: give one of them"),
+    ("evaluate run={trained} env.gravity=1", "got an unexpected keyword argument 'gravity'"),
     ("demonstrate task=hopper", "task=hopper: has no scripted expert; give expert=babble or run"),
     ("render run={trained} out=film.avi", "out=film.avi: must end in .mp4, .gif, .png"),
-    ("render task=panda_stack out=/dev/null/a.mp4", "a.mp4: there is no folder /dev/null"),
-    ("render run={trained} mode=training", "learns no belief over two coordinates, which"),
     ("figures runs=nowhere/*", "runs=nowhere/*: no run there"),
-    ("figures {trained}", 'unknown argument; quote the pattern: runs="GLOB"'),
-    ("figures rums={trained}", "threshold, others (did you mean runs?)"),
+    ("figures rums={trained}", "unknown argument; did you mean runs=VALUE?"),
     ("list config_dir=nowhere", "config_dir=nowhere: no such folder"),
 ]
 RESUMED = [  # overrides given with resume, words of the line
     ("algo=nn_mppi", "algo=nn_mppi: with resume only total_steps and precision"),
-    ("policy.hidden=[8,8]", "policy.hidden=[8,8]: with resume only total_steps and precision"),
     ("total_steps=100", "has 600; it can be raised, not lowered"),
-    ("precision=half", "hybrid_rl: precision=half: choose one of auto, mixed, bf16"),
-    ("total_steps=3000000000", "total_steps=3000000000: must be a whole number, from 1 to 21474"),
 ]
 
 
@@ -201,13 +143,11 @@ def test_a_run_without_a_checkpoint_is_not_resumed_and_none_is_written_over(
         assert words in only_line(capfd)
 
 
-@pytest.mark.parametrize("line", ["train num_envs=2.5", "evaluate run=nowhere"])
-def test_a_process_says_one_line(nothing_lost, line):
-    name, *arguments = line.split()
-    whole = [sys.executable, "-m", f"hybrid_rl.{name}", *arguments]
+def test_a_process_says_one_line(nothing_lost):
+    whole = [sys.executable, "-m", "hybrid_rl.train", "num_envs=2.5"]
     done = subprocess.run(whole, capture_output=True, text=True)
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr.startswith(f"hybrid_rl: {arguments[0]}: ")
+    assert done.stderr.startswith("hybrid_rl: num_envs=2.5: ")
     assert done.stderr.count("\n") == 1
 
 
@@ -264,32 +204,11 @@ def test_a_fault_of_ours_is_a_traceback_without_frames_of_hydra(tmp_path, monkey
     assert "/hydra/" not in printed
 
 
-@pytest.mark.parametrize(
-    ("given", "words"),
-    [
-        ("task=ant seed=1", r"\"task=ant seed=1\": give a list, \['task=ant', 'seed=1'\]"),
-        (["sed=3"], "sed: hybrid_stochastic has no such key; did you mean seed?"),
-    ],
-)
-def test_python_has_the_line_of_the_command(given, words):
-    with pytest.raises(UsageError, match=f"^{words}"):
-        config.load(given)
-
-
-def test_devices_that_are_not_there_are_one_line(monkeypatch, capfd):
-    """JAX says "assert _default_backend is not None" for cuda, and another traceback for tpu."""
-
-    def no_devices():
-        raise AssertionError
-
-    monkeypatch.setenv("JAX_PLATFORMS", "cuda")
-    assert failing(AssertionError()) == 1  # of something else: JAX has the devices
-    assert only_line(capfd).endswith(": AssertionError\n")
-    monkeypatch.setattr(jax, "devices", no_devices)
-    assert failing(AssertionError()) == 2
-    assert only_line(capfd) == (
-        "hybrid_rl: JAX_PLATFORMS=cuda: JAX finds no such device here; unset it, or choose cpu\n"
-    )
+def test_python_has_the_line_of_the_command():
+    with pytest.raises(UsageError, match=r"^sed: hybrid_stochastic has no such key"):
+        config.load(["sed=3"])
+    with pytest.raises(UsageError, match=r'^"task=ant": give a list'):
+        config.load("task=ant")
 
 
 @pytest.mark.parametrize("value", ["a", "it's", "[8,8]", "a\\", 'a\\"b', "007", "null", "a b", ""])

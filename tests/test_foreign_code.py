@@ -6,10 +6,19 @@ from typing import Any
 
 import numpy as np
 import pytest
-from foreign import changed, made, refused
+from foreign import METRIC, changed, made, refused
 from tiny import call, call_train, contents, only_line
 
-from hybrid_rl import OnlineLearner, __version__, demonstrate, evaluate, export, render, robot
+from hybrid_rl import (
+    OnlineLearner,
+    __version__,
+    demonstrate,
+    evaluate,
+    export,
+    figures,
+    render,
+    robot,
+)
 from hybrid_rl.cli import command
 from hybrid_rl.data import archive
 from hybrid_rl.data import trained as saved
@@ -18,9 +27,11 @@ from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import UsageError
 from hybrid_rl.files import targets as parts
 from hybrid_rl.run import folder as run_folder
+from hybrid_rl.run.machine import jax_settings
 from hybrid_rl.run.saved import read
 from hybrid_rl.settings import build as config
 from hybrid_rl.tools.doctor import __main__ as doctor
+from hybrid_rl.tools.report import __main__ as report
 from hybrid_rl.tools.view import __main__ as view
 
 EXTERNAL = {"_target_": "hybrid_rl.envs.adapters.external.External"}
@@ -93,6 +104,7 @@ TREES = [  # where a name stands
     {"learners": {"policy": {"make": "os:system"}}},
     {"controllers": {"full": {"any": {"depth": "os:system"}}}},
 ]
+SYSTEM = {"_target_": "os.system", "command": "true"}
 COMMANDS = {
     "evaluate": evaluate.main,
     "export": export.main,
@@ -118,6 +130,78 @@ def judged(folder: Path, **keys: object) -> str:
     (folder.parent / "__init__.py").write_text("")
     (folder / "config.yaml").write_text(json.dumps({"version": __version__} | keys))
     return refused(folder, lambda folder: run_folder.parse_config(folder, "run"))
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        *(
+            "os.system",
+            "builtins.exec",
+            "pydoc.pipepager",
+            "subprocess.run",
+            "this.s",
+            "numpy.save",
+        ),
+        *("antigravity.webbrowser", "yaml.unsafe_load", "__main__.x", "site.main", "pytest.main"),
+        "hybrid_rl.run.files.integrity.write_text",
+        "hybrid_rl.analysis.results.RunFolder",
+        "hybrid_rl.settings.build.Path",
+        "hybrid_rl.settings.build.Run",
+        "hybrid_rl.types.Spec",
+        "hybrid_rl.data.trained.Path",
+        "hybrid_rl.data.trained.save",
+        "hybrid_rl.envs..os",
+        "hybrid_rl..os.system",
+        "hybrid_rl.run.machine.provenance.subprocess.run",
+        "hybrid_rl.envs.analytic.pendulum.jax.numpy.save",
+        "hybrid_rl.envs.analytic.pendulum.dataclass",
+        "hybrid_rl.envs.analytic.pendulum.Pendulum.reset",
+        "hybrid_rl.scripts.bootstrap.main",
+        "hybrid_rl.theirs.run.zz_evil.World",
+        "hybrid_rl.envs.analytic",
+        "hybrid_rl",
+        "h\u0443brid_rl.envs.analytic.pendulum.Pendulum",  # a Cyrillic letter
+        "os\uff0esystem",
+        " os.system",
+        "os.system\n",
+        "os/system",
+        "../os.system",
+        "theirs.run.zz_evil.World",
+        "theirs.zz_evil.World",
+        "",
+        None,
+        5,
+        ["os.system"],
+        SYSTEM,
+    ],
+    ids=ascii,
+)
+def test_a_name_that_is_no_part_is_refused(folder, name):
+    (folder.parent / "__init__.py").write_text("")
+    changed(folder, env={"_target_": name})
+    line = refused(folder)
+    assert line.startswith(f"{folder}/config.yaml: env._target_=")
+
+
+@pytest.mark.parametrize(
+    ("keys", "at"),
+    [
+        ({"extra": SYSTEM}, "extra._target_"),
+        ({"_target_": "os.system"}, "_target_"),
+        ({"extra": [1, SYSTEM]}, "extra.1._target_"),
+        ({"extra": [[[SYSTEM]]]}, "extra.0.0.0._target_"),
+        ({"extra": {"_args_": [SYSTEM]}}, "extra._args_.0._target_"),
+        ({"extra": {"_partial_": True, "a": SYSTEM}}, "extra.a._target_"),
+        ({"extra": {"_recursive_": False, "a": SYSTEM}}, "extra.a._target_"),
+        ({"hydra": {"launcher": SYSTEM}}, "hydra.launcher._target_"),
+        ({"expert": SYSTEM}, "expert._target_"),
+    ],
+    ids=lambda given: given if isinstance(given, str) else "",
+)
+def test_it_is_refused_wherever_it_stands(folder, keys, at):
+    changed(folder, **keys)
+    assert refused(folder).startswith(f"{folder}/config.yaml: {at}=os.system: is no part of")
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -169,7 +253,7 @@ def test_a_policy_has_no_interpolations(tmp_path, key):
 def test_every_command_refuses_it(folder, capfd, name):
     changed(folder, env=GETOUTPUT)
     before = contents(folder)
-    given = [f"run={folder}", *(["out=a.npz"] if name == "export" else [])]
+    given = [f"run={folder}", *(["out=a.stablehlo"] if name == "export" else [])]
     assert call(lambda: command.run(COMMANDS[name]), *given) == 2
     assert "env.make=subprocess:getoutput: is no part" in only_line(capfd)
     assert contents(folder) == before
@@ -197,7 +281,7 @@ def test_no_learner_goes_on_and_no_robot_moves_with_it(folder, capfd):
 
 
 @pytest.mark.parametrize("key", ["task", "algo", "policy_learning"])
-@pytest.mark.parametrize("name", ["../../theirs/evil", "sac,ddpg", "sac +env.make=os", "a/../b"])
+@pytest.mark.parametrize("name", ["../../theirs/evil", "sac,ddpg", "a b", ".."])
 def test_a_run_chooses_no_file_of_others(folder, capfd, key, name):
     """For `train run=DIR` a word of it becomes an override."""
     (folder.parent / "evil.yaml").write_text("# @package _global_\nalgo: ${oc.env:HOME}\n")
@@ -259,3 +343,50 @@ def test_a_name_that_a_user_types_or_passes_is_the_users(tmp_path, monkeypatch):
     with pytest.raises(UsageError, match=r"env\.make=json:loads: TypeError"):
         External(make="json:loads")
     assert Robot(make="hybrid_rl.envs.adapters.stand_in:Cartpole").spec.act == 1
+
+
+def test_a_class_of_the_user_is_a_part_and_a_function_is_none(folder):
+    """Without importing the module; one that lies with the run is not the user's."""
+    Path("zz_mine.py").write_text("open('ran', 'w')\nclass World:\n    pass\ndef made(): pass\n")
+    changed(folder, env={"_target_": "zz_mine.World"})
+    assert run_folder.read(folder, "run").env._target_ == "zz_mine.World"
+    assert not Path("ran").exists()
+    changed(folder, env={"_target_": "zz_mine.made"})
+    assert "zz_mine.py has no class made" in refused(folder)
+    changed(folder, env={"_target_": "theirs.zz_evil.World"})
+    assert f"move {folder} out of {folder.parent}" in refused(folder)
+
+
+def test_words_that_a_terminal_or_matplotlib_obeys_are_shown_as_they_are(folder, capfd):
+    """In a line of ours, and in a picture."""
+    (folder / "checkpoints" / "5").rmdir()
+    changed(folder, task="$\\undefined{x}$", algo="$y_{$")
+    for main, out in ((report.main, "a.html"), (figures.main, "a.svg")):
+        line = [f"run={folder}"] if main is report.main else [f"runs={folder}", METRIC]
+        line.append(f"out={out}")
+        assert call(lambda main=main: command.run(main), *line) == 0
+    assert "$\\undefined{x}$" in Path("a.svg").read_text()
+    capfd.readouterr()
+    changed(folder, env={"_target_": "a\x1b]0;title\x07\nhybrid_rl: done"})
+    assert call(lambda: command.run(evaluate.main), f"run={folder}") == 2
+    line = only_line(capfd)
+    assert "\\x1b]0;title\\x07\\nhybrid_rl: done" in line
+    assert line.strip().isprintable()
+
+
+def test_a_folder_does_not_say_where_programs_are_kept(folder, tmp_path):
+    """And only JAX's own files are deleted there, in a folder of our own."""
+    changed(folder, compile_cache=str(tmp_path / "precious"))
+    default = config.load([]).compile_cache
+    assert run_folder.read(folder, "run").compile_cache == default
+    cache = jax_settings.cache_folder(str(tmp_path / "cache"))
+    assert cache is not None
+    half, whole = (f"jit_f-{digit * 64}" for digit in "ab")
+    names = ("thesis-cache", "jit_f-1234-cache", f"{half}-cache", f"{whole}-cache")
+    for name in (*names, f"{whole}-atime"):
+        (cache / name).touch()
+        (cache.parent / name).touch()
+    jax_settings._repair(cache)
+    assert not (cache / f"{half}-cache").exists()
+    assert len(list(cache.iterdir())) == 4
+    assert len(list(cache.parent.iterdir())) == 6

@@ -111,7 +111,7 @@ def test_a_planner_of_the_users_is_checked_before_it_acts(known, tmp_path, monke
     (tmp_path / "controller").mkdir()
     gives = r"Push\.act: returned action float32\[2\]; it must be float32\[1\]"
     for name, more, words in (
-        ("push", "", "Push has no greedy; write def greedy"),
+        ("push", "", r"Push has no greedy; see protocols\.Controller"),
         ("push_on", "    def greedy(self): return self\n", gives),
     ):
         (tmp_path / f"{name}.py").write_text(PUSH + more)
@@ -192,32 +192,13 @@ def test_a_file_holds_the_reward_and_the_constraint_of_its_run(tmp_path) -> None
     assert (other.constraint.most, other.reward) == (1.0, load(folder).episode.reward)
 
 
-def test_evaluate_names_the_goal(trained: Path, capsys, monkeypatch) -> None:
-    """In its output and in the file's name; the policy alone has a line beside the planner."""
-    main = lambda *words: call(lambda: command.run(evaluate.main), *words)  # noqa: E731
-    policy = {}
-
-    def returns(trained: Trained, mode: str, episodes: int, *_):
-        if mode == "policy" and not policy:
-            policy.update(by_rollout(trained, mode, episodes))
-        # A planner is not what is tested, and slow to compile.
-        return policy if mode == "policy" else {"return": np.full((1, episodes), 7.0)}
-
-    by_rollout, each = evaluate.evaluate, {}
-    monkeypatch.setattr(evaluate, "evaluate", returns)
-    for mode in ("full", "policy"):
-        assert main(f"run={trained}", "episodes=2", f"mode={mode}", *AT, "env.reward=cos") == 0
-        shown = capsys.readouterr().out
-        assert "reward=aim, reward.quantity=position" in shown
-        (file,) = trained.glob(f"evaluation_{mode}_reward=aim*.json")
-        each[mode] = json.loads(file.read_text())
-        assert each[mode]["changes"]["reward.target"] == "0.5"
-        if mode == "full":
-            (line,) = [row for row in shown.splitlines() if "policy alone" in row]
-        else:
-            assert "alone" not in shown
-    alone = np.mean(each["policy"]["returns"])
-    assert line == f"the policy alone: {alone:,.1f} (mode=policy)"
+def test_evaluate_names_the_goal(trained: Path, capsys) -> None:
+    """In its output and in the file's name."""
+    given = [f"run={trained}", "episodes=2", "mode=policy", *AT, "env.reward=cos"]
+    assert call(lambda: command.run(evaluate.main), *given) == 0
+    assert "reward=aim, reward.quantity=position" in capsys.readouterr().out
+    (file,) = trained.glob("evaluation_policy_reward=aim*.json")
+    assert json.loads(file.read_text())["changes"]["reward.target"] == "0.5"
 
 
 def test_a_return_that_is_not_finite_is_one_line_and_no_file(
@@ -237,14 +218,10 @@ def test_a_return_that_is_not_finite_is_one_line_and_no_file(
         ("reward=fame", "reward=fame: unknown; choose one of aim, height, level"),
         ("reward.target=2", "reward.target=2: is a key of reward=NAME; give that with it"),
         ("planner.samples=0", "planner.samples=0: must be a whole number, 1 or more"),
-        ("constraint.most=2", "constraint.most=2: is a key of constraint=NAME; give that with it"),
-        ("episode.sensor_noise=a", "episode.sensor_noise=a: must be 0 or more"),
+        ("episode.sensor_noise=a", "episode.sensor_noise=a: must be a number"),
         ("reward=speed reward.tarket=2", "has no such key; did you mean reward.target?"),
-        ("reward=speed reward.target=fast", "reward.target=fast: must be"),
         ("reward=level", "reward.world=Cartpole: has no pitch, only position, speed, height"),
-        ("planner=gradient planner.tail=-1", "planner.tail=-1: must be a whole number, 0 or more"),
         ("planner=fast", "hybrid_rl: planner=fast: unknown; choose one of adjoint"),
-        ("planner=3", "hybrid_rl: planner=3: unknown; choose one of adjoint"),
         ("imagine=dreams", "imagine=dreams: unknown; choose one of policy"),
         ("imagine=policy imagine.updates=0", "imagine.updates=0: must be a whole number, 1"),
     ],

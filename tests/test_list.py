@@ -91,16 +91,15 @@ def test_every_one_says_what_it_is():
 def test_arguments_are_refused(monkeypatch, capsys):
     assert call(monkeypatch, "task=hopper") == 2
     printed = capsys.readouterr().err
-    line = "task=hopper: unknown argument; give key=value with config_dir"
+    line = "task=hopper: unknown argument; give KEY=VALUE with config_dir"
     assert printed == f"hybrid_rl: {line}\n"
 
 
-@pytest.mark.parametrize("given", [["config_dir={}"], ["--config-dir", "{}"]])
-def test_the_entries_of_ones_own_are_listed(conf, monkeypatch, capsys, given):
+def test_the_entries_of_ones_own_are_listed(conf, monkeypatch, capsys):
     (conf / "task" / "kettle.yaml").write_text(
         "# Kettle: boils.\nenv:\n  _target_: kettle.Kettle\n"
     )
-    assert call(monkeypatch, *(text.format(conf) for text in given)) == 0
+    assert call(monkeypatch, f"config_dir={conf}") == 0
     printed = capsys.readouterr().out
     assert "  kettle " in printed
     assert "Kettle: boils." in printed

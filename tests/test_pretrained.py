@@ -1,15 +1,13 @@
 """Trained policies in files: what the package ships, and what a run writes."""
 
 import json
-import re
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 import pytest
 from tiny import call, only_line
 
-from hybrid_rl import evaluate, export
+from hybrid_rl import evaluate
 from hybrid_rl.cli import command
 from hybrid_rl.data import archive
 from hybrid_rl.errors import UsageError
@@ -36,14 +34,6 @@ def test_a_policy_of_the_package_is_small_and_has_its_origin(name):
     action = trained.policy()(np.zeros(trained.episode.spec.obs))
     assert np.abs(action).max() <= 1
     assert action.all()
-
-
-def test_the_page_shows_the_function_that_export_writes(tmp_path):
-    page = (Path(__file__).resolve().parents[1] / "docs" / "faq.md").read_text(encoding="utf-8")
-    (shown,) = re.findall(r"```python\n(P = .*?)```", page, re.DOTALL)
-    out = tmp_path / "act.npz"
-    assert call(lambda: command.run(export.main), "policy=halfcheetah", f"out={out}") == 0
-    assert out.with_suffix(".py").read_text(encoding="utf-8").endswith(shown)
 
 
 def test_evaluating_it_gives_its_number(capsys):

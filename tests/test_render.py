@@ -178,11 +178,8 @@ def test_a_picture_is_no_larger_than_the_framebuffer(trained, monkeypatch, capsy
         (["run=x", "task=sawyer_push"], "run, policy, task: give one of them"),
         (["run=x", "expert.gain=1"], "expert: is not for x; give it with task=T"),
         (["task=panda_stack", "reward=speed"], "reward: is not for panda_stack; give it"),
-        (["task=pendulum"], "task=pendulum: has no scripted expert"),
         (["run=x", "width=63"], "width=63: must be an even number, 2 or more"),
-        (["run=x", "episode_steps=0"], "episode_steps=0: must be a whole number, 1 or more"),
         (["run=x", "at=0,5"], "at=0,5: needs out=FILE.png"),
-        (["run=x", "seed=5"], "seed=5: the run has 3, 4"),
     ],
 )
 def test_bad_usage_is_one_line_and_code_2(trained, monkeypatch, capsys, arguments, line):

@@ -56,7 +56,7 @@ def call(main: Callable[[], None], *arguments: str | Path) -> int:
 def call_train(*arguments: str | Path) -> int:
     """Exit code of `python -m hybrid_rl.train`."""
     with shared():
-        return call(lambda: hydra_line.hydra_main(train._job), *arguments)
+        return call(lambda: hydra_line.main(train._job), *arguments)
 
 
 def rows_of(folder: Path) -> list[dict]:

@@ -81,12 +81,10 @@ def length(world: Any, asked: int, out: Path) -> int:
 
 
 def draw_outside(
-    trained: Any, mode: str, seed: int | None, steps: int, number: int, out: Path
+    world: Any, controller: Any, params: Any, key: Any, steps: int, out: Path
 ) -> tuple[int, float]:
-    """Draw an episode of a Gymnasium environment; (pictures, return). Arguments as of `episode`."""
-    world = trained.episode
-    policy = TrainedPolicy(world.spec, *trained.learner(seed, mode))
-    key = evaluation_keys(trained.seeds[0] if seed is None else seed, number + 1)[-1]
+    """Draw an episode of a Gymnasium environment, `steps` decisions at most; (pictures, return)."""
+    policy = TrainedPolicy(world.spec, controller, params)
     seeds = [seed_of(*map(int, jax.random.key_data(key)))]
     offscreen.lend()
     copies = world.env.copies(seeds, world.steps, world.action_repeat, "rgb_array")

@@ -33,14 +33,20 @@ from hybrid_rl.analysis.curves import (
     spread,
     steps_to,
 )
-from hybrid_rl.analysis.curves_picture import plot
+from hybrid_rl.analysis.curves_picture import LABELS, plot
 from hybrid_rl.analysis.results import redrawn
+from hybrid_rl.analysis.studies import save
 from hybrid_rl.cli.arguments import number
+from hybrid_rl.errors import UsageError
+from hybrid_rl.run.logs import curve as text
+from hybrid_rl.run.logs.progress import say
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ARRAYS = ("x", "each", "iqm", "low", "high")  # of a curve
+EVALUATION = "eval/return"
+LEAST = 3  # evaluations of a curve that is shown
 FEW = 4  # seeds, of whose resamples more than 2.5% have the lowest one as their mean
 WIDTH = number(0, " of steps (or seconds), 0 or more")
 VALUE = number(what=" in the metric's unit")
@@ -77,6 +83,27 @@ def figure(
     if threshold is not None:
         numbers["threshold"] = threshold
     return picture, numbers
+
+
+def show(run_dir: Path) -> None:
+    """Print and draw the evaluations of a run, if there are at least LEAST of them."""
+    try:
+        lines = curves(run_dir, EVALUATION)
+    except UsageError:  # there are none
+        return
+    known = np.isfinite(lines[0].iqm)
+    if known.sum() < LEAST:
+        return
+    drawn = run_dir / "curve.png"
+    try:
+        save(*figure(run_dir, EVALUATION), drawn)
+    except OSError as error:
+        say(f"{drawn}: not written ({error.strerror or error})")
+    seeds = len(lines[0].seeds)
+    mean = f", interquartile mean of {seeds} seeds" if seeds > 1 else ""
+    title = f"{LABELS[EVALUATION]}{mean} ({drawn})"
+    one = text.drawn(lines[0].x[known], lines[0].iqm[known], title, "decisions")
+    say(one if len(lines) == 1 else title)
 
 
 def summary(numbers: dict[str, Any]) -> list[str]:

@@ -33,8 +33,6 @@ def report(error: BaseException) -> NoReturn:
 
 def _unread() -> bool:
     """Whether nothing reads the output any more, as in `| head`."""
-    if not hasattr(polling, "poll"):  # Windows
-        return False
     poll = polling.poll()
     poll.register(sys.stdout.fileno(), 0)
     return any(event & polling.POLLERR for _, event in poll.poll(0))
@@ -53,30 +51,11 @@ def diagnosis(error: BaseException) -> tuple[int, str] | None:
         return 2, explain(error)
     if isinstance(error, (OSError, DivergenceError, MemoryError)):
         return 1, str(error)
-    if platform := _missing(error):
-        named = f"JAX_PLATFORMS={platform}"
-        return 2, f"{named}: JAX finds no such device here; unset it, or choose cpu"
-    if isinstance(error, ImportError) and "failed to map segment" in str(error):  # ulimit -v
-        return 1, f"out of memory: {error}"
     if str(error).startswith("RESOURCE_EXHAUSTED"):  # of XLA
         what = str(error).splitlines()[0]
         return 1, f"{what}; fewer num_seeds or num_envs, or a smaller replay.capacity, may fit"
     if line := user_line(error, ours=True):
         return 1, line
-    return None
-
-
-def _missing(error: BaseException) -> str | None:
-    """What JAX_PLATFORMS names, if JAX may have raised this as there is no such device."""
-    named = os.environ.get("JAX_PLATFORMS")
-    if not named or not isinstance(error, (RuntimeError, AssertionError)):
-        return None
-    import jax
-
-    try:
-        jax.devices()
-    except (RuntimeError, AssertionError):
-        return named
     return None
 
 

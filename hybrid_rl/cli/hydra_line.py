@@ -1,15 +1,14 @@
-"""Hydra's command line: its options, its help, and errors that name what was typed."""
+"""The command line of `train`: options, the help, and overrides for Hydra to compose."""
 
 import inspect
 import os
 import re
 import sys
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import hydra
 from hydra.core.hydra_config import HydraConfig
-from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf, open_dict
 
 from hybrid_rl.cli import arguments, command
@@ -19,12 +18,11 @@ from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings import words as overrides
 from hybrid_rl.settings.groups import CONF, groups, search_path
 
-FLAGS = ("-m", "--multirun", "--resolve", "--version", "--hydra-help", "-sc", "--shell-completion")
-VALUED = ("-c", "--cfg", "-p", "--package", "-i", "--info")  # a word follows
+SWEEP, SHOW = ("-m", "--multirun"), ("-c", "--cfg")
+FOLDER = ("config_dir", "--config-dir", "-cd")  # as of other commands, and of Hydra
 KEYS = (*configuration.READ, "schedule", "settings", "experiment", "sweep")  # in the help
 # GROUP=NAME of a part, of one value
 CHOICE = re.compile(r"^((?!hydra|task|algo|settings|experiment)[\w@./]+=)([\w./-]+)$")
-FOLDER = ("config_dir", "--config-dir", "-cd")  # as of other commands, and of Hydra
 USAGE = """
 
 {doc}
@@ -39,58 +37,51 @@ Options:
   --help           this text
 
 `python -m hybrid_rl.list` shows the tasks, the methods and the experiments."""
+Job = Callable[..., Any]  # (composed configuration, overrides); in a study also what gets its rows
 
 
-def hydra_main(job: Callable[..., Any]) -> None:
-    """Run `job` on the configuration that the command line composes, once or in a sweep.
-
-    A sweeper may give `job` further arguments.
-    """
-
-    def run(config: DictConfig, *more: Any) -> Any:
-        with open_dict(config):
-            config.hydra = HydraConfig.get()
-        return job(*configuration.read_only([config]), *more)
-
-    def checked(config: DictConfig) -> None:
-        if (launcher := HydraConfig.get().runtime.choices["hydra/launcher"]) != "basic":
-            raise UsageError(f"hydra/launcher={launcher}: sends the jobs of a sweep; add -m")
-        run(config)
-
-    def alone(config: DictConfig, *more: Any) -> Any:
-        if HydraConfig.get().mode == RunMode.MULTIRUN:  # checked, and reported, by sweep.Sweeper
-            return run(config, *more)
-        command.reported(lambda: checked(config))  # ends here, before Hydra adds lines of its own
+def main(job: Job) -> None:
+    """Run `job` on the configuration that the command line composes; -m: on those of a sweep."""
+    if set(arguments.HELP) & set(sys.argv[1:]):
+        print(usage(inspect.getmodule(job)))
+        return
 
     def composed() -> None:
         options, words, folders = _sorted(sys.argv[1:])
         words = start.add_recipe(words, *folders)
-        if {"--cfg=job", "-c=job"} & {*options}:
-            print(OmegaConf.to_yaml(configuration.compose_raw(words, *folders)), end="")
+        if {*SWEEP} & {*options}:
+            _sweep(job, words, folders)
             return
-        line = [*options, *(f"--config-dir={folder}" for folder in folders), *words]
-        sys.argv[1:] = _forced(line, groups(*folders))
-        hydra.main(config_path=str(CONF), config_name="train", version_base="1.3")(alone)()
+        for text in words:
+            if text.startswith("hydra/"):
+                raise UsageError(f"{text}: is for the jobs of a sweep; add -m")
+        config = configuration.compose_raw(words, *folders)
+        if {*SHOW} & {*options}:
+            print(OmegaConf.to_yaml(config), end="")
+        else:
+            job(config, words)
 
-    if set(arguments.HELP) & set(sys.argv[1:]):
-        print(usage(inspect.getmodule(job)))
-        return
-    os.environ.setdefault("HYDRA_FULL_ERROR", "1")  # raises here instead of printing there
     command.reported(composed)
 
 
-def _forced(line: Sequence[str], names: Collection[str]) -> list[str]:
-    """The words as Hydra takes them; names: of groups.
+def _sweep(job: Job, words: Sequence[str], folders: Sequence[str]) -> None:
+    """Let Hydra's sweeper, cli.sweep or tools.tuner, run the jobs."""
 
-    In a sweep a choice of one value, too, is for the jobs: the default may lack the part.
-    """
-    line = overrides.forced(line, names)
-    if not {"-m", "--multirun"} & {*line}:
-        return line
-    return [
+    def one(config: DictConfig, *more: Any) -> Any:
+        made = HydraConfig.get()
+        with open_dict(config):
+            config.hydra = made
+        return job(configuration.read(config), overrides.of_job(made), *more)
+
+    names = groups(*folders)
+    # a choice of one value is for the jobs, too: the default method may lack the part
+    words = [
         CHOICE.sub(r"\1choice(\2)", text) if overrides.is_group(text, names) else text
-        for text in line
+        for text in overrides.forced(words, names)
     ]
+    sys.argv[1:] = ["-m", *(f"--config-dir={folder}" for folder in folders), *words]
+    os.environ.setdefault("HYDRA_FULL_ERROR", "1")  # raises here instead of printing there
+    hydra.main(config_path=str(CONF), config_name="train", version_base="1.3")(one)()
 
 
 def usage(module: Any) -> str:
@@ -104,23 +95,22 @@ def usage(module: Any) -> str:
 
 
 def _sorted(line: Sequence[str]) -> tuple[list[str], list[str], list[str]]:
-    """Options, overrides, and the folder of config_dir=DIR; Hydra's parser takes no mixture."""
+    """Options, overrides, and the folder of config_dir=DIR."""
     options, words, folders = [], [], []
-    texts = iter(enumerate(line))
-    for at, text in texts:
+    texts = iter(line)
+    for text in texts:
         name, equals, value = text.partition("=")
-        if name in (*VALUED, *FOLDER) and (equals or name.startswith("-")):
-            value = value if equals else next(texts, (at, ""))[1]
+        if name in (*SHOW, *FOLDER) and (equals or name.startswith("-")):
+            value = value if equals else next(texts, "")
             if name in FOLDER:
                 search_path(value)  # UsageError unless it is a folder
                 folders.append(value)
             else:
-                options.append(f"{name}={value}")
-        elif name in FLAGS:
+                options.append(name)
+        elif text in SWEEP:
             options.append(text)
         elif not name.startswith("-") and (equals or text.startswith("~")):
             words.append(text)
         else:
-            pair = "a list in quotes: 'KEY=[A, B]'" if "]" in text else arguments.as_pair(line, at)
-            raise UsageError(f"{text}: is no KEY=VALUE; write {pair}")
+            raise UsageError(f"{text}: write KEY=VALUE, a list in quotes, 'KEY=[A, B]'")
     return options, words, folders

@@ -8,39 +8,53 @@ the highest one of its jobs. `jobs.json` in the sweep's folder holds what the ta
 import json
 import sys
 import traceback
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+from hydra._internal.core_plugins.basic_sweeper import BasicSweeper
 from hydra.core.hydra_config import HydraConfig
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override
 from hydra.core.plugins import Plugins
-from hydra.errors import HydraException
 from omegaconf import DictConfig, OmegaConf
-from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl.cli import command
-from hybrid_rl.cli.combinations import jobs_of, labels
 from hybrid_rl.cli.submitted import Result, launch, require_slurm
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import members as program
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.folder import members, new_folder
+from hybrid_rl.run.logs.records import result_line
 from hybrid_rl.run.machine import distributed
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.run.start import build_new_run
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings import words
-from hybrid_rl.settings.complete import refusal
-from hybrid_rl.settings.compose import explain
+from hybrid_rl.settings.compose import UNCOMPOSED, explain
 from hybrid_rl.settings.values import check
-from hybrid_rl.settings.words import forced, parse, quoted, raw_values, typed
+from hybrid_rl.settings.words import forced, parse, quoted, typed
 
-WHOLE = ("task", "algo", "settings", "experiment", "learning")  # choices that are no parts
 ACCELERATED = ("auto", "mjx", "warp")  # physics that may need a GPU to build a world
+
+
+def jobs_of(parsed: Sequence[Override]) -> list[list[str]]:
+    """The overrides of each job: every combination of the values."""
+    for each in parsed:
+        if each.is_interval_sweep():
+            raise UsageError(f"{each.input_line}: a range needs hydra/sweeper=tuned; list values")
+        if each.is_sweep_override() and not [*each.sweep_string_iterator()]:
+            raise UsageError(f"{each.input_line}: has no values")
+    return BasicSweeper.split_arguments([*parsed], None)[0]
+
+
+def labels(jobs: Sequence[Sequence[str]]) -> dict[int, str]:
+    """The overrides of each job that not all jobs share."""
+    common = set.intersection(*map(set, jobs))
+    own = ([text for text in overrides if text not in common] for overrides in jobs)
+    return {number: " ".join(texts) for number, texts in enumerate(own)}
 
 
 class Task:
@@ -60,7 +74,7 @@ class Task:
         result: Result = {"code": 0, "line": "done"}
         self.results[number] = result
         try:
-            result |= _outcome(self.job(config))
+            result["line"] = result_line(self.job(config) or {})
         except (SystemExit, KeyboardInterrupt) as end:
             code = end.code if isinstance(end, SystemExit) else 130
             result |= {"code": code, "line": "stopped"}
@@ -78,18 +92,6 @@ def here(hydra: Any) -> bool:
     return str(hydra.launcher._target_).endswith("BasicLauncher")
 
 
-def _outcome(summary: Any) -> Result:
-    """The result of a finished run in the table."""
-    if not isinstance(summary, dict):
-        return {}
-    for name, called in (("final_eval", "evaluation"), ("final_return", "training return")):
-        known = [value for value in summary.get(name) or () if value is not None]
-        if known:
-            over = f" (mean of {len(known)} seeds)" if len(known) > 1 else ""
-            return {"line": f"{called} {sum(known) / len(known):,.1f}{over}"}
-    return {}
-
-
 class Sweeper:
     """Checks, runs and reports every combination of the given values."""
 
@@ -104,15 +106,9 @@ class Sweeper:
 
     def sweep(self, arguments: list[str]) -> Any:
         """Run all jobs; end the process with the highest exit code if one failed."""
-        arguments = typed(arguments)
         require_slurm(str(self.config.hydra.runtime.choices["hydra/launcher"]))
-        jobs = jobs_of(self._parsed(arguments))
-        self.task.labels = labels(jobs)
-        fit, notes = self._fitting(jobs)
-        jobs, configs = [*fit], [*fit.values()]
-        self.task.labels = labels(jobs)
-        self._check(jobs, configs)
-        print(*notes, sep="", end="", flush=True)
+        jobs = jobs_of(self._parsed(typed(arguments)))
+        configs = self._checked(jobs)
         folder = Path(str(self.config.hydra.sweep.dir))
         folder.mkdir(parents=True, exist_ok=True)
         jobs = _folders(jobs, configs)
@@ -137,106 +133,56 @@ class Sweeper:
         parser = OverridesParser.create(config_loader=self.hydra_context.config_loader)
         return parser.parse_overrides([*(f"{k}={v}" for k, v in self.params.items()), *arguments])
 
-    def _fitting(
-        self, jobs: Sequence[Sequence[str]]
-    ) -> tuple[dict[tuple[str, ...], DictConfig], list[str]]:
-        """The jobs without overrides of what only other jobs have, and lines about these.
-
-        Jobs that are the same then are one. With each what its run reads.
-        """
-        lost: dict[str, UsageError] = {}  # override -> why some job cannot have it
-        unread: dict[str, list[tuple[str, Any]]] = {}  # override -> keys and values of such jobs
-        fit = {}
-        for number, job in enumerate(jobs):
-            try:
-                config = self._composed(number, job)
-            except UsageError:
-                absent = self._absent(number, job)
-                if not absent:
-                    raise
-                job, lost = [text for text in job if text not in absent], {**absent, **lost}
-                config = self._composed(number, job)
-            config, keys = configuration.read(config)
-            for path, text in keys.items():
-                unread.setdefault(text, []).append((path, raw_values(config)))
-            fit[tuple(text for text in job if text not in keys.values())] = config
-        notes = []
-        for text in (*lost, *unread):
-            those = [str(number) for number, job in enumerate(fit) if text in job]
-            if not those and text in lost:
-                raise lost[text]
-            if not those:
-                raise UsageError(refusal(unread[text][0][0], [raw for _, raw in unread[text]]))
-            notes.append(f"{text}: for job {', '.join(those)} alone; the others have no such key\n")
-        return fit, notes
-
-    def _absent(self, number: int, job: Sequence[str]) -> dict[str, UsageError]:
-        """The choices of parts that the method of a job does not have, with their errors."""
-        forced = self._forced(job)
-        choices = [text for text, own in zip(job, forced, strict=True) if text == own]
-        choices = [text for text in choices if words.name(text) not in WHOLE]
-        kept, absent = [text for text in job if text not in choices], {}
-        for text in choices:
-            try:
-                self._composed(number, [*kept, text])
-                kept.append(text)
-            except UsageError as error:
-                absent[text] = error
-        return absent
-
     def _forced(self, job: Sequence[str]) -> list[str]:
         """The overrides of a job as Hydra takes them."""
         loader = self.hydra_context.config_loader
         names = {words.name(text).partition("@")[0] for text in job}
         return forced(job, {each for each in names if loader.get_group_options(each)})
 
-    def _composed(self, number: int, overrides: Sequence[str]) -> DictConfig:
-        """The configuration of a job, with Hydra's own; UsageError if there is none."""
-        loader = self.hydra_context.config_loader
+    def _checked(self, jobs: Sequence[Sequence[str]]) -> list[DictConfig]:
+        """What the runs of the jobs read, after all checks that need no compilation."""
+        self.task.labels = labels(jobs)
+        configs = []
+        for number, job in enumerate(jobs):
+            with self._naming(number):
+                configs.append(self._composed(job))
+        for number, (job, config) in enumerate(zip(jobs, configs, strict=True)):
+            with self._naming(number):
+                self._check(job, config.copy())
+        return configs
+
+    @contextmanager
+    def _naming(self, number: int) -> Iterator[None]:
+        """Within, errors name the job."""
         try:
-            return loader.load_sweep_config(self.config, self._forced(overrides))
-        except HydraException as error:
-            raise UsageError(f"{explain(error)} ({self._called(number)})") from error
+            yield
+        except (UsageError, *UNCOMPOSED) as error:
+            line = error if isinstance(error, UsageError) else explain(error)
+            label = f"{self.task.called} {number}: {self.task.labels[number]}"
+            raise UsageError(f"{line} ({label.removesuffix(': ')})") from error
 
-    def _read(self, jobs: Sequence[Sequence[str]]) -> Sequence[DictConfig]:
-        """What the runs of the jobs read, of which none is without a part of the others."""
-        return configuration.read_only([self._composed(*job) for job in enumerate(jobs)])
+    def _composed(self, job: Sequence[str]) -> DictConfig:
+        loader = self.hydra_context.config_loader
+        return configuration.read(loader.load_sweep_config(self.config, self._forced(job)))
 
-    def _check(self, jobs: Sequence[Sequence[str]], configs: Sequence[DictConfig]) -> None:
-        """All checks that need no compilation.
+    def _check(self, job: Sequence[str], config: DictConfig) -> None:
+        """Raise UsageError if a job cannot run, alone or with those that share its program.
 
-        Jobs that run elsewhere are built with the physics that needs no GPU here.
+        One that runs elsewhere is built with the physics that needs no GPU here; of those of
+        distributed=true, which run here, the processes are counted first.
         """
-        for number, (overrides, config) in enumerate(zip(jobs, configs, strict=True)):
-            if not here(self.config.hydra) and config.physics in ACCELERATED:
-                config = config.copy()
-                config.physics = "native"
-            try:
-                _check(program.expand_sweep(config, overrides), here(self.config.hydra))
-            except (UsageError, OmegaConfBaseException) as error:
-                line = error if isinstance(error, UsageError) else explain(error)
-                raise UsageError(f"{line} ({self._called(number)})") from error
-
-    def _called(self, number: int) -> str:
-        """What messages call a job."""
-        return f"{self.task.called} {number}: {self.task.labels[number]}".removesuffix(": ")
-
-
-def _check(members: Sequence[program.Member], joins: bool) -> None:
-    """Raise UsageError if a job cannot run, alone or with those that share its program.
-
-    joins: it runs in this process, one of those of distributed=true, which are counted first.
-    """
-    runs = []
-    for each in members:
-        if each.config.resume is None:
-            check(each.config)
-            prepare(each.config)  # first: a check of the user's world initialises JAX
-            if joins and each.config.distributed:
-                distributed.share(each.config)
-            runs.append(build_new_run(each.config)[0])
-    if len(runs) > 1:
-        program.axis_of([member.values for member in members], runs)
+        local = here(self.config.hydra)
+        if not local and config.physics in ACCELERATED:
+            config.physics = "native"
+        swept, runs = program.expand_sweep(config, job), []
+        for own in (member.config for member in swept if member.config.resume is None):
+            check(own)
+            prepare(own)  # first: a check of the user's world initialises JAX
+            if local and own.distributed:
+                distributed.share(own)
+            runs.append(build_new_run(own)[0])
+        if len(runs) > 1:
+            program.axis_of([member.values for member in swept], runs)
 
 
 def _folders(jobs: Sequence[Sequence[str]], configs: Sequence[DictConfig]) -> list[list[str]]:

@@ -1,10 +1,9 @@
-"""A multilayer perceptron as a file that runs elsewhere: NumPy, ONNX, or a C header.
+"""A multilayer perceptron as a model of ONNX, which runs elsewhere.
 
-Each holds u = squash(W_L a(... a(W_1 (x - mean) / scale + b_1) ...) + b_L) with its numbers, or
+It holds u = squash(W_L a(... a(W_1 (x - mean) / scale + b_1) ...) + b_L) with its numbers, or
 middle + half u where the world's actions have other bounds than -1 and 1.
 """
 
-import re
 from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
@@ -12,130 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.data import archive
 from hybrid_rl.files.atomic import replacing
 from hybrid_rl.networks import Perceptron
 from hybrid_rl.types import Spec
 
 OPSET, IR = 17, 8  # of ONNX: runtimes refuse files that are newer than they are
-FUNCTIONS = {  # activation or squashing of z -> NumPy's, C's of a double, ONNX' operator
-    "relu": ("np.maximum({}, 0)", "z > 0 ? z : 0", "Relu"),
-    "sin": ("np.sin({})", "sin(z)", "Sin"),
-    "tanh": ("np.tanh({})", "tanh(z)", "Tanh"),
-    "silu": ("silu({})", "z / (1 + exp(-z))", ""),
-    "elu": ("elu({})", "z > 0 ? z : expm1(z)", "Elu"),
-    "clip": ("np.clip({}, -1, 1)", "z < -1 ? -1 : z > 1 ? 1 : z", ""),
-}
-DEFINED = {  # those that NumPy lacks
-    "silu": "def silu(z):\n    return z / (1 + np.exp(-z))\n\n\n",
-    "elu": "def elu(z):\n    return np.where(z > 0, z, np.expm1(np.minimum(z, 0)))\n\n\n",
-}
-SCRIPT = '''"""The policy of {task}: obs [{o}] -> action [{m}] {within}, every {dt:g} s."""
-
-from pathlib import Path
-
-import numpy as np
-
-P = dict(np.load(Path(__file__).with_suffix(".npz")))
-
-
-{defined}def act(obs):
-    """The action [{m}] at obs [{o}]; or [N, {m}] at [N, {o}]."""
-    x = (np.asarray(obs, np.float32) - P["mean"]) / P["scale"]
-    if not np.isfinite(x).all():
-        raise ValueError("obs: an entry is not finite")
-    for i in range(1, {last}):
-        x = {activation}
-    return {squash}
-'''
-HEADER = """/* The policy of {task}: observation [{o}] -> action [{m}] {within}, every {dt:g} s.
-
-   C99; link with -lm. No memory is allocated. */
-#ifndef {guard}
-#define {guard}
-#include <math.h>
-
-#define {guard}_OBS {o}
-#define {guard}_ACT {m}
-
-{arrays}
-
-/* Returns 0; or 1 and leaves u alone if an entry of x is not finite. */
-static int {name}_act(const float x[{o}], float u[{m}])
-{{
-    double a[{widest}], b[{widest}];
-    int i, j;
-    for (i = 0; i < {o}; i++) {{
-        if (!isfinite(x[i]))
-            return 1;
-        a[i] = ((double)x[i] - {name}_mean[i]) / {name}_scale[i];
-    }}
-{layers}
-    for (i = 0; i < {m}; i++)
-        u[i] = (float)({action});
-    return 0;
-}}
-#endif
-"""
-LAYER = """    for (j = 0; j < {outputs}; j++) {{
-        double z = {name}_b{number}[j];
-        for (i = 0; i < {inputs}; i++)
-            z += a[i] * {name}_W{number}[i * {outputs} + j];
-        b[j] = {function};
-    }}
-    for (j = 0; j < {outputs}; j++)
-        a[j] = b[j];"""
-
-
-def save_numpy(out: Path, task: str, spec: Spec, net: Perceptron) -> Path:
-    """Write OUT.npz and OUT.py, which has a function `act` of NumPy; returns the latter.
-
-    The code holds numbers, and of words only the name of the task, which `archive.write` checked.
-    """
-    archive.write(out, task, spec, dict(_arrays(net)))
-    last, layer = len(net.weights), 'x @ P[f"W{i}"] + P[f"b{i}"]'
-    squash = FUNCTIONS[net.squash][0].format(f'x @ P["W{last}"] + P["b{last}"]')
-    code = SCRIPT.format(
-        **_about(repr(task), spec, net),
-        last=last,
-        defined=DEFINED.get(net.activation, ""),
-        activation=FUNCTIONS[net.activation][0].format(layer),
-        squash=squash if net.span is None else f'P["middle"] + P["half"] * {squash}',
-    )
-    script = out.with_suffix(".py")
-    with replacing(script) as draft:
-        draft.write_text(code, encoding="utf-8")
-    return script
-
-
-def save_c(out: Path, task: str, spec: Spec, net: Perceptron) -> str:
-    """Write OUT, a C header; returns the name of its function.
-
-    Sums are of doubles: those of floats differ from the policy's by 1e-5 and more.
-    """
-    name = re.sub(r"\W", "_", f"policy_{task}").lower()
-    lines = [
-        f"static const float {name}_{key}[{value.size}] = {{{_floats(value)}}};"
-        for key, value in _arrays(net)
-    ]
-    names = [*[net.activation] * (len(net.weights) - 1), net.squash]
-    functions = [FUNCTIONS[each][1] for each in names]
-    layers = [
-        LAYER.format(number=i, name=name, inputs=len(W), outputs=W.shape[1], function=function)
-        for i, (W, function) in enumerate(zip(net.weights, functions, strict=True), 1)
-    ]
-    text = HEADER.format(
-        **_about(task, spec, net),
-        guard=name.upper(),
-        name=name,
-        action="a[i]" if net.span is None else f"{name}_middle[i] + {name}_half[i] * a[i]",
-        widest=max(max(W.shape) for W in net.weights),
-        arrays="\n".join(lines),
-        layers="\n".join(layers),
-    )
-    with replacing(out) as draft:
-        draft.write_text(text, encoding="utf-8")
-    return f"{name}_act"
+OPERATORS = {"relu": "Relu", "sin": "Sin", "tanh": "Tanh", "elu": "Elu"}  # of an activation
 
 
 def save_onnx(out: Path, task: str, spec: Spec, net: Perceptron) -> None:
@@ -182,7 +63,7 @@ def _function(node: Any, function: str, z: str, out: str) -> str:
         return node("Mul", [z, node("Sigmoid", [z], f"{out}_gate")], out)
     if function == "clip":
         return node("Clip", [z, "low", "high"], out)
-    return node(FUNCTIONS[function][2], [z], out)
+    return node(OPERATORS[function], [z], out)
 
 
 def _arrays(net: Perceptron) -> Iterator[tuple[str, np.ndarray]]:
@@ -194,25 +75,3 @@ def _arrays(net: Perceptron) -> Iterator[tuple[str, np.ndarray]]:
         yield f"b{i}", bias
     if net.span is not None:
         yield from zip(("middle", "half"), net.span, strict=True)
-
-
-def _about(task: str, spec: Spec, net: Perceptron) -> dict[str, Any]:
-    """The task, its sizes and time step, and where an action lies, in words."""
-    within = "in [-1, 1]"
-    if net.span is not None:
-        middle, half = net.span
-        low, high = (", ".join(f"{x:g}" for x in ends) for ends in (middle - half, middle + half))
-        within = f"from [{low}] to [{high}]"
-    return {
-        "task": task,
-        "o": int(spec.obs),
-        "m": int(spec.act),
-        "dt": float(spec.dt),
-        "within": within,
-    }
-
-
-def _floats(values: np.ndarray) -> str:
-    """Literals of C, of which each float is read back exactly; C99 ends a line at 4,095 signs."""
-    each = [f"{float(value):#.9g}f" for value in np.ravel(values)]
-    return ",\n    ".join(", ".join(each[i : i + 6]) for i in range(0, len(each), 6))

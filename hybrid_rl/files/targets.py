@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any
 
 from hybrid_rl.errors import FAULTS, UsageError, printable, relative, user_line
-from hybrid_rl.fields import FieldError
+from hybrid_rl.fields import FieldError, check_all
 from hybrid_rl.files import modules
 from hybrid_rl.files.modules import NONE, OTHER, PACKAGE
 
@@ -116,7 +116,9 @@ def _made(node: Any, near: Path | None, where: str) -> Any:
         return fields
     kind = part_class(node[TARGET], near)
     try:
-        return kind(**fields)
+        made = kind(**fields)
+        check_all(made)
+        return made
     except FieldError as error:
         raise (error.at(where) if where else error) from None
     except ValueError:

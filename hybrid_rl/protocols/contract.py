@@ -8,23 +8,17 @@ Left what a method takes, right what it returns; with sizes an array of floats, 
 A name that stood before has the same structure, shapes and types again: a state that `init` gives
 comes back from `step` as it was. `metrics` are numbers by name, and a letter without a number gets
 one where it first stands. Nothing is compiled. What is wrong is one line with the file of the part.
-
-Source for the indices: JAX's documentation, "Sharp bits: out-of-bounds indexing", "checkify".
 """
 
 import inspect
 import re
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import suppress
 from dataclasses import dataclass, field, fields, is_dataclass
-from functools import partial
 from typing import Any, NoReturn, TypeVar, get_args
 
 import jax
 import jax.numpy as jnp
-import numpy as np
-from jax.experimental import checkify
 
 from hybrid_rl.errors import PartError, SourceOf
 from hybrid_rl.types import EnvState, Path, Spec
@@ -34,10 +28,7 @@ TERM = re.compile(r"(\w+)( \[(.*?)\])?")
 OTHERS = {"hybrid_rl", "jax", "jaxlib", *sys.stdlib_module_names}  # packages
 FORM = {"obs": "o", "reward": "", "terminated": "", "truncated": ""}  # of an EnvState
 FLAGS = "terminated", "truncated"
-DRAWN = (
-    "gives other numbers when it is traced again: what NumPy or Python draws is a constant of the "
-    "compiled program; use jax.random, with a key"
-)
+T = 5  # decisions of a path
 
 
 def gives(signature: str) -> Callable[[Thing], Thing]:
@@ -46,16 +37,6 @@ def gives(signature: str) -> Callable[[Thing], Thing]:
     def mark(method: Any) -> Any:
         method.gives = signature
         return method
-
-    return mark
-
-
-def may(**signatures: str) -> Callable[[Thing], Thing]:
-    """Say what the methods take and return that a part of this protocol may leave out."""
-
-    def mark(protocol: Any) -> Any:
-        protocol._may = signatures
-        return protocol
 
     return mark
 
@@ -74,25 +55,19 @@ class Contract:
 
     def __post_init__(self) -> None:
         self.source = SourceOf(self.part, self.error)
-        self.sizes = {"T": 5, "o": self.spec.obs, "m": self.spec.act, "n": self.spec.n}
+        self.sizes = {"o": self.spec.obs, "m": self.spec.act, "n": self.spec.n}
         key = jax.eval_shape(lambda: jax.random.key(0))
         self.values = {"key": key, "spec": self.spec, **self.values}
         self.given: dict[str, str] = {}  # the method that gave a value
 
     def check_members(self) -> None:
-        """Raise PartError for a class, or for a member that is missing or takes other arguments."""
+        """Raise PartError for a class in place of an instance, or for a member that is missing."""
         check_instance(self.part, self.error)
-        needs = f", which {type(self.owner).__name__}.{self.name} needs" if self.name else ""
-        for name, member in members(self.protocol).items():
-            has, remedy = getattr(self.part, name, self), f"see protocols.{self.protocol.__name__}"
-            if inspect.isfunction(member):
-                names = [*inspect.signature(member).parameters]
-                form = f"{name}({', '.join(names)})"
-                remedy = f"write def {form}"
-                if callable(has) and not _takes(has, len(names) - 1):
-                    self.refuse(name, f"must be {form}")
-            if has is self:
-                raise self.error(f"{self.source.at()} has no {name}{needs}; {remedy}")
+        for name in members(self.protocol):
+            if getattr(self.part, name, self) is self:
+                needs = f", which {type(self.owner).__name__}.{self.name} needs"
+                line = f"{self.source.at()} has no {name}{needs if self.name else ''}"
+                raise self.error(f"{line}; see protocols.{self.protocol.__name__}")
 
     def check(self) -> dict[str, Any]:
         """Raise PartError for a method that gives something else; the traces by method.
@@ -102,22 +77,12 @@ class Contract:
         self.check_members()
         traces = {}
         for name, signature in signatures(self.protocol).items():
-            known = all(self._known(*term) for term in terms(signature.split("->")[0]))
-            if known and getattr(self.part, name, None) is not None:
+            if all(self._known(*term) for term in terms(signature.split("->")[0])):
                 traces[name] = self.trace(name)
         return traces
 
-    def check_examples(self) -> None:
-        """As `check`, and what the user's pays for two random decisions, for `check_indices`."""
-        self.check()
-        if of_user(self.part):
-            rng = np.random.default_rng(0)
-            x, u = (rng.normal(size=(2, n)).astype("f") for n in (self.spec.obs, self.spec.act))
-            (name,) = signatures(self.protocol)
-            check_indices(self.source, name, (x[0], u[0], x[1]), (x[1], u[1], x[0]))
-
     def trace(self, name: str) -> Any:
-        """Compare what a method gives, traced twice by JAX, which must be the same program."""
+        """Compare what a method gives, traced by JAX."""
         takes, returns = map(terms, signatures(self.protocol)[name].split("->"))
         arguments = [self._value(*term) for term in takes]
         fixed = tuple(i for i, (of, _) in enumerate(takes) if of == "spec")
@@ -126,12 +91,8 @@ class Contract:
             result = getattr(self.part, name)(*given)
             return jax.tree.map(self._of_path, result, is_leaf=inspect.isfunction)
 
-        # two functions: neither trace is kept
-        programs = [jax.jit(partial(call), static_argnums=fixed) for _ in range(2)]
-        first, again = (self.source.blamed(name, each.trace, *arguments) for each in programs)
-        if program_text(first) != program_text(again):
-            self.refuse(name, DRAWN)
-        result = first.out_info
+        traced = self.source.blamed(name, jax.jit(call, static_argnums=fixed).trace, *arguments)
+        result = traced.out_info
         if len(returns) == 1:
             result = (result,)
         elif not isinstance(result, tuple) or len(result) != len(returns):
@@ -139,7 +100,7 @@ class Contract:
             self.refuse(name, f"returned {words(result)}; it must be ({must})")
         for (of, sizes), value in zip(returns, result, strict=True):
             self._judge(name, of, sizes, value)
-        return first
+        return traced
 
     def refuse(self, method: str, line: str) -> NoReturn:
         """Raise PartError about a method."""
@@ -147,34 +108,26 @@ class Contract:
 
     def _known(self, name: str, sizes: str | None) -> bool:
         if sizes is None:
-            return name in ("x", "path") or name in self.values
+            return name == "x" or name in self.values
         return all(isinstance(size, int) for size in self._shape(sizes))
 
     def _value(self, name: str, sizes: str | None) -> Any:
         """The value of an argument: one that is known, or floats of these sizes."""
-        if name == "path":
-            x, T = self._value("x", None), self.sizes["T"]
-            x = jax.tree.map(lambda leaf: jax.ShapeDtypeStruct((T + 1, *leaf.shape), leaf.dtype), x)
-            return Path(x, self._value("u", "T, m"))
         if sizes is None and name in self.values:
             return self.values[name]
         return jax.ShapeDtypeStruct(self._shape("n" if sizes is None else sizes), jnp.float32)
 
     def _shape(self, sizes: str) -> tuple[int | str, ...]:
-        """[T+1, n] in numbers; a letter without one stays."""
-        shape = []
-        for size in filter(None, sizes.split(", ")):
-            letter, plus, more = size.partition("+")
-            number = self.sizes.get(letter, letter)
-            shape.append(number + int(more) if plus and isinstance(number, int) else number)
-        return tuple(shape)
+        """Sizes in numbers; a letter without one stays."""
+        return tuple(self.sizes.get(size, size) for size in filter(None, sizes.split(", ")))
 
     def _of_path(self, result: Any) -> Any:
         """A result; of a function of a path what it gives."""
         if not inspect.isfunction(result):
             return result
-        path = self._value("path", None)
-        return result(jax.tree.map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), path))
+        x = self._value("x", None)
+        xs = jax.tree.map(lambda leaf: jnp.zeros((T + 1, *leaf.shape), leaf.dtype), x)
+        return result(Path(xs, jnp.zeros((T, self.spec.act))))
 
     def _judge(self, method: str, name: str, sizes: str | None, value: Any) -> None:
         """Raise PartError for a returned value of another shape or type."""
@@ -246,7 +199,7 @@ def members(protocol: type) -> dict[str, Any]:
 def signatures(protocol: type) -> dict[str, str]:
     """Name -> what a method takes and returns."""
     has = {name: getattr(member, "gives", "") for name, member in members(protocol).items()}
-    return {name: text for name, text in has.items() if text} | getattr(protocol, "_may", {})
+    return {name: text for name, text in has.items() if text}
 
 
 def parts(part: Any) -> Iterator[tuple[Any, str, Any, Any]]:
@@ -281,40 +234,6 @@ def has_users(part: object) -> bool:
     """True if a part, or one in it, is of the user's code; or one of several parts in a list."""
     several = part if isinstance(part, list) else [part]
     return any(map(of_user, [*several, *(inner for _, _, _, inner in parts(part))]))
-
-
-def check_indices(source: SourceOf, method: str, *examples: tuple[Any, ...]) -> None:
-    """Raise PartError for an index out of range, of which JAX takes the nearest entry.
-
-    The method runs with each of `examples`, in one compiled program. Only an index that is the same
-    wrong one in all of them counts, as one that follows from the state may be meant to be clamped.
-    Slices, which stop at the end as NumPy's do, are not found.
-    """
-    found = []
-    with suppress(Exception):  # of what checkify cannot transform
-        call = getattr(source.object, method)
-        checked = jax.jit(checkify.checkify(call, errors=checkify.index_checks))
-        found = [checked(*given)[0].get() for given in examples]
-    if found and found[0] and len({*found}) == 1:
-        line = f"{source.at(method)}: IndexError: {found[0].strip().rstrip('.')}"
-        raise source.error(f"{line}; JAX takes the nearest entry without a word")
-
-
-def _takes(method: Callable[..., Any], number: int) -> bool:
-    """True if a method takes `number` arguments, or if Python does not know."""
-    with suppress(ValueError):
-        try:
-            inspect.signature(method).bind(*range(number))
-        except TypeError:
-            return False
-    return True
-
-
-def program_text(traced: Any) -> str:
-    """The program that JAX traced, with its constants."""
-    program = traced.jaxpr
-    constants = "\n".join(map(str, program.consts))
-    return re.sub(r" at 0x\w+", "", f"{program}\n{constants}")
 
 
 def words(value: Any) -> str:

@@ -4,11 +4,10 @@ from typing import Protocol
 
 from jax import Array
 
-from hybrid_rl.protocols.contract import gives, may
+from hybrid_rl.protocols.contract import gives
 from hybrid_rl.types import Params, PyTree, Return, Spec
 
 
-@may(reward_to_go="Params, path -> S [T+1]")
 class Objective(Protocol):
     """J(path): the return that a planner maximises; any function of the path and of the past.
 

@@ -1,7 +1,6 @@
-"""Policies and planners as programs of JAX and as plain layers, which hybrid_rl.export writes."""
+"""Policies and planners as programs of JAX, and policies as plain layers."""
 
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import Any
 
 import jax
@@ -11,8 +10,7 @@ from jax import Array
 
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.core.lifting import is_identity
-from hybrid_rl.data.layers import SCRIPT, save_c, save_numpy, save_onnx
-from hybrid_rl.errors import UsageError, install
+from hybrid_rl.errors import UsageError
 from hybrid_rl.networks import Perceptron, precision
 from hybrid_rl.protocols import Controller
 from hybrid_rl.types import Params, Spec
@@ -96,24 +94,3 @@ def layers(spec: Spec, controller: Controller, params: Params) -> Perceptron:
         line = f"the file holds a multilayer perceptron of observations, this is {name}"
         raise UsageError(f"out: {line}; choose out=FILE.stablehlo")
     return made(params.policy, spec)
-
-
-def check_script(out: Path) -> None:
-    """Raise UsageError if OUT.py is a file of the user's."""
-    script = out.with_suffix(".py")
-    if script.exists() and not script.read_text(encoding="utf-8").startswith(SCRIPT[:16]):
-        raise UsageError(f"out={out}: {script} would be replaced; choose another name")
-
-
-def saved(out: Path, task: str, spec: Spec, net: Perceptron) -> str:
-    """Write the file of a policy; returns a line that says how it is used."""
-    if out.suffix == ".h":
-        return f'{out}: #include "{out.name}"; {save_c(out, task, spec, net)}(obs, action)'
-    if out.suffix == ".npz":
-        script = save_numpy(out, task, spec, net)
-        return f"{out} and {script}: from {script.stem} import act; action = act(obs)"
-    try:
-        save_onnx(out, task, spec, net)
-    except ImportError as error:
-        raise UsageError(f"out={out}: needs onnx; {install('onnx')}") from error
-    return f'{out}: onnxruntime.InferenceSession("{out.name}").run(None, {{"obs": obs[None]}})'

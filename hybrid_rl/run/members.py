@@ -79,7 +79,7 @@ def expand_sweep(config: DictConfig, texts: Sequence[str]) -> list[Member]:
 def _check_values(raw: dict[str, Any], key: str, values: Any) -> None:
     """Raise UsageError for a key that does not exist, or for what is no list of numbers."""
     if select(raw, key) is LACKING:
-        raise UsageError(f"sweep.{refusal(key, [raw])}")
+        raise UsageError(f"sweep.{refusal(key, raw)}")
     numbers = values if isinstance(values, list) else []
     finite = all(type(x) in (int, float) and isfinite(x) for x in numbers)
     if not numbers or not finite or len({*numbers}) < len(numbers):

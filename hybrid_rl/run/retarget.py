@@ -34,7 +34,6 @@ from jax import Array
 from omegaconf import DictConfig, OmegaConf, open_dict
 from omegaconf.errors import OmegaConfBaseException
 
-from hybrid_rl.data.replay import Replay
 from hybrid_rl.envs.adapters.robot import Outside, Robot
 from hybrid_rl.envs.adapters.unstepped import ALONE
 from hybrid_rl.errors import UsageError
@@ -47,7 +46,6 @@ from hybrid_rl.settings.complete import LACKING, complete, refusal, select
 from hybrid_rl.settings.compose import explain
 from hybrid_rl.settings.groups import CONF, search_path
 from hybrid_rl.settings.words import forced, raw_values, value_of
-from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.contract import check_acting
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import Imagination
@@ -125,7 +123,7 @@ def aimed(
         if not {group, *goal} & {*named}:
             raise UsageError(f"{named[key]}: is a key of {group}=NAME; give that with it")
         if select(raw, key) is LACKING:
-            raise UsageError(refusal(key, [{**raw, "algo": config.get("algo")}]))
+            raise UsageError(refusal(key, {**raw, "algo": config.get("algo")}))
     goal = _fitting(config, OmegaConf.create({key: raw[key] for key in composed}))
     for text in overrides:
         if (key := re.split("[.=]", text)[0]) in (*PLANNERS, "imagine") and key not in goal:
@@ -161,9 +159,8 @@ def _greedy(
 ) -> dict[str, Controller]:
     """The controllers without exploration."""
     if has_users([*controllers.values()]):
-        agent = Agent(episode, next(iter(controllers.values())), {}, Replay())
         one: Any = jax.tree.map(lambda leaf: leaf[0], trained.params)
-        check_acting(agent, controllers.values(), one)
+        check_acting(episode, controllers.values(), controllers.values(), one)
     return {mode: controller.greedy() for mode, controller in controllers.items()}
 
 

@@ -1,7 +1,7 @@
 """From overrides to parts: compose conf/, check it, build a run."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,12 +20,9 @@ from hybrid_rl.errors import PartError, UsageError
 from hybrid_rl.fields import FieldError
 from hybrid_rl.files.targets import build as build_part
 from hybrid_rl.protocols import Controller
-from hybrid_rl.settings import values as checks
-from hybrid_rl.settings import words as overriding
 from hybrid_rl.settings.complete import LACKING, complete, refusal, select
 from hybrid_rl.settings.compose import (
     UNCOMPOSED,
-    check_keys,
     complete_names,
     explain,
     keys_of,
@@ -33,7 +30,17 @@ from hybrid_rl.settings.compose import (
 )
 from hybrid_rl.settings.groups import CONF, groups, search_path
 from hybrid_rl.settings.registry import register
-from hybrid_rl.settings.values import COUNTS, PAID, SECTIONS, check, check_kinds
+from hybrid_rl.settings.values import (
+    COUNTS,
+    PAID,
+    SECTIONS,
+    check,
+    random_decisions,
+    set_length,
+    time_limit,
+    whole,
+)
+from hybrid_rl.settings.words import forced, name, of_job, raw_values, typed_values
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import Imagination
@@ -79,57 +86,45 @@ def load(overrides: Sequence[str] = (), config_dir: str | Path | None = None) ->
 
 def compose_raw(overrides: Sequence[str], config_dir: str | Path | None = None) -> DictConfig:
     """What a run of these overrides reads, with its references; errors as `load`."""
-    if isinstance(overrides, str | Mapping):
-        pairs = {} if isinstance(overrides, str) else overrides
-        words = [f"{key}={value}" for key, value in pairs.items()] or str(overrides).split()
-        raise UsageError(f'"{overrides}": give a list, {words}')
-    more = [] if config_dir is None else [search_path(config_dir)]
-    words = overriding.forced(overrides, groups(config_dir))
+    if isinstance(overrides, str):
+        raise UsageError(f'"{overrides}": give a list, {overrides.split()}')
+    words = forced(overrides, groups(config_dir))
+    if config_dir is not None:
+        own = search_path(config_dir)
+        others = [text for text in words if name(text) == "hydra.searchpath"]
+        paths = ",".join(text.partition("=[")[2].rstrip("]") for text in (own, *others))
+        words = [f"hydra.searchpath=[{paths}]", *(text for text in words if text not in others)]
     try:
         with COMPOSING:
             known = GlobalHydra.instance().is_initialized()
             with nullcontext() if known else initialize_config_dir(str(CONF), version_base="1.3"):
-                config = compose("train", [*more, *words], return_hydra_config=True)
+                config = compose("train", words, return_hydra_config=True)
     except UNCOMPOSED as error:
         raise UsageError(explain(error)) from error
-    return read_only([config])[0]
+    return read(config)
 
 
-def take_hydra(config: DictConfig) -> DictConfig:
-    """Hydra's own part of what it composed, which `config` then lacks."""
-    with open_dict(config):
-        return config.pop("hydra")
+def read(config: DictConfig) -> DictConfig:
+    """What a run reads: its sections and all that they refer to, parts complete.
 
-
-def read_only(configs: Sequence[DictConfig]) -> list[DictConfig]:
-    """What the run of each job reads: its sections and all that they refer to, parts complete.
-
-    configs: as Hydra composed them, one for each job of a sweep.
+    config: as Hydra composed it, with Hydra's own part. UsageError for a typed key that it lacks.
     """
-    made, lost = zip(*map(read, configs), strict=True)
-    for path in lost[0]:
-        if all(path in each for each in lost):
-            raise UsageError(refusal(path, [overriding.raw_values(each) for each in made]))
-    return [*made]
-
-
-def read(config: DictConfig) -> tuple[DictConfig, dict[str, str]]:
-    """Keys that the run of a job reads, and those that it does not: typed key -> words."""
     config = config.copy()
-    hydra = take_hydra(config)
+    with open_dict(config):
+        hydra = config.pop("hydra")
     complete_names(config, hydra)
-    raw = overriding.raw_values(config)
+    raw = raw_values(config)
     new = raw["resume"] is None
-    typed = keys_of(overriding.of_job(hydra), hydra) if new else {}
-    sizes = settings_keys(hydra)  # a part that lacks one keeps what it has
-    raw = complete(raw, (*READ, "sweep"), {**typed, **sizes})
-    if new:
-        check_keys(hydra, raw)
-    lost = {path: text for path, text in typed.items() if select(raw, path) is LACKING}
+    typed = keys_of(of_job(hydra), hydra) if new else []
+    # a part that lacks a key of `settings` keeps what it has
+    raw = complete(raw, (*READ, "sweep"), [*typed, *settings_keys(hydra)])
+    for path in typed:
+        if select(raw, path) is LACKING:
+            raise UsageError(refusal(path, raw))
     sources = (each.path for each in hydra.runtime.config_sources if each.schema == "file")
     mine = [path for path in sources if Path(path) != CONF]
     raw["config_dir"] = mine[0] if mine else None  # of the user's files
-    return OmegaConf.create(raw, flags={"struct": True}), lost
+    return OmegaConf.create(raw, flags={"struct": True})
 
 
 def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
@@ -141,7 +136,7 @@ def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
     values.pop("sweep", None)
     words = (text for text in overrides if not re.match(r"\+*(sweep|hydra)\.|-", text))
     values["recipe"] = [re.sub(r"\$\{([^}]*)\}", r"$(\1)", text) for text in words]  # no references
-    values["random_steps"] = checks.random_decisions(values, overriding.typed_values(overrides))
+    values["random_steps"] = random_decisions(values, typed_values(overrides))
     if values["task"] in ("gymnasium", "playground", "robot"):  # of many environments
         names = (values["env"].get(key) for key in ("make", "id", "name"))
         values["task"] = re.sub(r"[^A-Za-z0-9_.-]", "_", str(next(filter(None, names), "_")))
@@ -167,10 +162,10 @@ def built(config: DictConfig) -> Run:
     """As `build`, of a configuration that `check` has passed."""
     rounds = -(-config.total_steps // config.num_envs)
     remembered = config.get("begun", {}).get("remembered", 0)  # decisions of each environment
-    checks.whole("replay.capacity", config.replay.capacity)
+    whole("replay.capacity", config.replay.capacity)
     with _usage(config):
         parts = _on_this_machine(config)
-        checks.set_length(parts.learners, config.total_steps)
+        set_length(parts.learners, config.total_steps)
         episode, notes, controllers = _acting(parts)
         agent = Agent(
             episode,
@@ -196,7 +191,6 @@ def _acting(parts: DictConfig) -> tuple[Episode, tuple[str, ...], dict[str, Cont
 def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller], Imagination | None]:
     """The episodes of `config`, its controllers, and what learns before them."""
     with _usage(config):
-        check_kinds(config)
         parts = _on_this_machine(config)
         episode, _, controllers = _acting(parts)
         before = _instantiate(parts.get("imagine"), "imagine")
@@ -206,7 +200,6 @@ def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller], Imaginat
 def episodes(config: DictConfig) -> Episode:
     """The episodes of `config`, without its method."""
     with _usage(config):
-        check_kinds(OmegaConf.create({"env": config.env}))
         return _episode(_on_this_machine(config))[0]
 
 
@@ -218,7 +211,7 @@ def _episode(parts: DictConfig) -> tuple[Episode, tuple[str, ...]]:
     given = target | _instantiate(parts.episode, "episode")
     given |= {name: _instantiate(parts.get(name) or None, name) for name in PAID}
     if isinstance(env, External | Robot):
-        given |= checks.time_limit(env, given)
+        given |= time_limit(env, given)
     return build_part(given, where="episode"), notes
 
 
@@ -227,7 +220,6 @@ def expert(config: DictConfig) -> Controller:
     if config.get("expert") is None:
         line = "has no scripted expert; give expert=babble or run=DIR"
         raise UsageError(f"task={config.task}: {line}")
-    check_kinds(config.expert, "expert.")
     with _usage(config, "its expert"):
         return _instantiate(config.expert, "expert")
 
@@ -244,16 +236,16 @@ def _on_this_machine(config: DictConfig) -> DictConfig:
     """The sections, in which every copy of the world has its physics resolved."""
     sections = [key for key in (*SECTIONS, *PAID, "imagine") if key in config]
     parts: Any = OmegaConf.masked_copy(config, sections)
-    name = physics(config)
+    chosen = physics(config)
 
     def visit(node: Any) -> None:
         for key, value in node.items() if isinstance(node, DictConfig) else enumerate(node):
             if key == "physics" and value == config.env.physics:
-                node[key] = name
+                node[key] = chosen
             elif isinstance(value, (DictConfig, ListConfig)):
                 visit(value)
 
-    if name is not None:
+    if chosen is not None:
         visit(parts)
     return parts
 

@@ -9,7 +9,7 @@ themselves or by reference, so a key that is not there is a key without effect.
 import difflib
 import inspect
 import re
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
 from hybrid_rl.errors import UsageError
@@ -21,10 +21,6 @@ LACKING: Any = object()  # the value of a key that does not exist
 NAMES = {"world": "env"}  # field -> the key that it refers to, where its name is another
 CLASSES = {"episode": "hybrid_rl.training.episode.Episode"}  # of a section without a `_target_`
 CHOICES = ("settings", "experiment", "learning", "planner")  # groups without a key of their name
-THEIRS = {  # names of other libraries
-    **{"gamma": "discount", "lr": "learning_rate", "buffer_size": "capacity"},
-    **{"learning_starts": "random_steps", "total_timesteps": "total_steps"},
-}
 
 
 def source(raw: Mapping[str, Any], path: str) -> str:
@@ -171,29 +167,25 @@ def _kept(node: Any, read: Mapping[str, Any], where: str = "") -> Any:
     return kept
 
 
-def refusal(path: str, raws: Sequence[Mapping[str, Any]]) -> str:
-    """The line about a typed key that none of these configurations has."""
-    methods, raw = list(dict.fromkeys(str(each.get("algo")) for each in raws)), raws[0]
-    line = f"{path}: {', '.join(methods)} {'have' if methods[1:] else 'has'} no such key"
+def refusal(path: str, raw: dict[str, Any]) -> str:
+    """The line about a typed key that a configuration lacks."""
     above, _, last = path.rpartition(".")
     group = select(raw, above) if above else None
     if isinstance(group, dict):
         names = [key for key in group if key != TARGET]
-        known, hint = (
-            [f"{above}.{key}" for key in names],
-            f"{above} has {', '.join(names) or 'none'}",
-        )
+        known, hint = [f"{above}.{key}" for key in names], f"{above} has {', '.join(names)}"
     else:
-        values = keys(dict(raw)).items()
+        values = keys(raw).items()
         known = [*(key for key, value in values if not REFERENCE.match(str(value))), *CHOICES]
         hint = "`--cfg job` shows every key"
     near = nearest(last, known)
+    line = f"{path}: {raw.get('algo')} has no such key"
     return f"{line}; {f'did you mean {near}?' if near else hint}"
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
     """The known key that is most like a word: with its last name, or by its letters; or ""."""
-    known, word = [*known], THEIRS.get(word, word)
+    known = [*known]
     ends = re.compile(rf"(^|[._]){re.escape(word)}$")
     if same := [key for key in known if ends.search(key)]:
         return min(same, key=lambda key: (key.split(".")[-1] != word, key.count(".")))

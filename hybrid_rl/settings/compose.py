@@ -2,7 +2,7 @@
 
 import difflib
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,7 @@ from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl.errors import UsageError, install, relative
 from hybrid_rl.settings import words as overrides
-from hybrid_rl.settings.complete import keys, nearest
+from hybrid_rl.settings.complete import keys
 from hybrid_rl.settings.groups import CONF, THESIS, options
 from hybrid_rl.settings.values import COUNTS
 
@@ -22,21 +22,20 @@ MANY = 40  # names that are too many for a line; tasks are fewer
 GLOBAL = "# @package _global_"
 OF_GYMNASIUM = re.compile(r"(?P<id>-v\d+$)|(?P<make>\w:\w)")  # ids, and MODULE:CLASS
 UNCOMPOSED = (HydraException, OmegaConfBaseException, yaml.YAMLError)  # what `explain` explains
-ROOT_KEY = re.compile(r"^(\w+):", re.MULTILINE)
 INHERIT = "set them, or begin with defaults: [/task@_global_: pendulum, _self_] to take its values"
 
 
-def keys_of(texts: Sequence[str], hydra: Any) -> dict[str, str]:
-    """Key -> override, of a job: that of a value, and of a choice that of the part it makes.
+def keys_of(texts: Sequence[str], hydra: Any) -> list[str]:
+    """The keys that overrides change: of a choice that of the part it makes.
 
     A choice that spreads over the configuration, as `algo`, and `sweep.KEY` have none.
     """
-    found = {}
-    for text, override in zip(texts, overrides.parse(texts), strict=True):
+    found = []
+    for override in overrides.parse(texts):
         file = chosen(hydra, override.key_or_group)
         spreads = file is not None and GLOBAL in file.read_text(encoding="utf-8")[:100]
         if not (spreads or override.is_delete() or overrides.is_swept(override.key_or_group)):
-            found[overrides.key(override).replace("/", ".")] = text
+            found.append((override.package or override.key_or_group).replace("/", "."))
     return found
 
 
@@ -120,27 +119,3 @@ def complete_names(config: DictConfig, hydra: Any) -> None:
         if group not in OmegaConf.load(file):
             with open_dict(config):
                 config[group] = file.stem
-
-
-def check_keys(hydra: Any, read: Mapping[str, Any]) -> None:
-    """Raise UsageError for a key of the user's task that no method reads, as after a slip.
-
-    hydra: Hydra's own part of what was composed; read: what the run reads of it.
-    """
-    file = of_the_user(hydra, "task")
-    if file is None:
-        return
-    known = _root_keys(hydra, file) | read.keys() | {"defaults"}
-    for key in map(str, OmegaConf.load(file)):
-        if key not in known:
-            hint = f"; did you mean {near}?" if (near := nearest(key, known)) else ""
-            raise UsageError(f"{relative(file)}: {key}: unknown key, which nothing reads{hint}")
-
-
-def _root_keys(hydra: Any, without: Path) -> set[str]:
-    """The keys at the root of all YAML files that can be chosen, one left out."""
-    sources = [Path(each.path) for each in hydra.runtime.config_sources if each.schema == "file"]
-    files = {file for source in (*sources, THESIS) for file in source.rglob("*.yaml")} - {without}
-    texts = (file.read_text(encoding="utf-8", errors="replace") for file in files)
-    root = (CONF / "train.yaml").read_text(encoding="utf-8")
-    return set(ROOT_KEY.findall("\n".join([root, *(text for text in texts if GLOBAL in text)])))

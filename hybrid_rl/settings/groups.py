@@ -16,16 +16,11 @@ def search_path(config_dir: str | Path) -> str:
     folder = Path(config_dir).expanduser().resolve()
     if not folder.is_dir():
         raise UsageError(f"config_dir={config_dir}: no such folder")
-    ours = {file.relative_to(CONF): file.read_bytes() for file in CONF.glob("*/**/*.yaml")}
-    for group, names in registry.choices(CONF).items():
-        ours |= {Path(group, f"{name}.yaml"): b"" for name in names}
-    for name, text in sorted(ours.items()):
-        mine = folder / name
-        if mine.is_file() and mine.read_bytes() != text:
-            raise UsageError(
-                f"config_dir={config_dir}: hybrid_rl has {name.parent.as_posix()}={name.stem} of "
-                f"its own, which a run would take; rename {name}"
-            )
+    for group in filter(Path.is_dir, folder.iterdir()):
+        for name in options(group.name):
+            if (group / f"{name}.yaml").is_file():
+                line = f"hybrid_rl has {group.name}={name} of its own, which a run would take"
+                raise UsageError(f"config_dir={config_dir}: {line}; rename that file")
     return f"hydra.searchpath=['file://{folder}','pkg://hybrid_rl.thesis.conf']"
 
 

@@ -2,19 +2,17 @@
 
 import math
 from collections.abc import Collection, Mapping
-from dataclasses import fields, is_dataclass
 from numbers import Integral
-from types import NoneType
-from typing import Any, get_origin
+from typing import Any
 
-from omegaconf import DictConfig, ListConfig, OmegaConf
+from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.adapters.unstepped import Unstepped
 from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS
 from hybrid_rl.errors import UsageError, printable
-from hybrid_rl.fields import as_yaml, choices, plain
+from hybrid_rl.fields import as_yaml
 from hybrid_rl.files import targets as parts
 from hybrid_rl.networks.precision import PRECISIONS
 from hybrid_rl.settings.groups import MODES
@@ -28,16 +26,7 @@ SECTIONS = ("env", "episode", "replay", "controllers", "learners")
 PAID = ("reward", "constraint")  # what the world pays and asks for; a run may lack the keys
 TRUE_MODEL = "hybrid_rl.models.world.World"
 STEPS = 2**31  # decisions, fewer of which are counted
-FINITE = 3.4e38  # the largest number of 32 bits
 SEEDS = 2**32  # distinct seeds of JAX's generator
-KINDS = {  # type of a part's field -> its name in messages
-    int: "a whole number",
-    float: "a number",
-    bool: "true or false",
-    str: "a word",
-    tuple: "a list",
-    NoneType: "null",
-}
 
 
 def check_words(config: DictConfig) -> None:
@@ -54,28 +43,18 @@ def check(config: DictConfig) -> None:
     values = OmegaConf.to_container(config)
     parts.check(values)
     check_words(config)
-    check_kinds(OmegaConf.create({"env": config.env}))  # first, as other parts hold copies of it
-    kind, models = (
-        parts.part_class(config.env._target_),
-        [name for _, name in parts.targets(values)],
-    )
-    if TRUE_MODEL in models and isinstance(kind, type) and issubclass(kind, Unstepped):
+    plans = TRUE_MODEL in {name for _, name in parts.targets(values)}
+    if plans and issubclass(parts.part_class(config.env._target_), Unstepped):
         line = "plans on the true dynamics, and this task steps outside JAX; take one that learns"
         raise UsageError(f"task={config.task}: {config.algo} {line}")
     for key in COUNTS:
         whole(key, config[key])
     countable(config)
     whole("seed", config.seed, 0, SEEDS - config.num_seeds)
-    modes, freeze = config.eval_modes, config.get("freeze", ListConfig([]))
-    if not (isinstance(modes, ListConfig) and {*modes} <= {*MODES}):
-        raise UsageError(f"eval_modes={as_yaml(modes)}: must be a list of {', '.join(MODES)}")
-    if not (isinstance(freeze, ListConfig) and all(type(name) is str for name in freeze)):
-        raise UsageError(f"freeze={freeze}: must be a list of learners, as in freeze=[policy]")
-    for key in ("checkpoint_replay", "distributed"):
-        one_of(key, config.get(key, False), (True, False))
+    for mode in [None] if config.eval_modes is None else config.eval_modes:
+        one_of("eval_modes", mode, MODES)
     for key, known in (("precision", PRECISIONS), ("physics", IMPLEMENTATIONS)):
         one_of(key, config[key], known)
-    check_kinds(config)
 
 
 def _check_groups(config: DictConfig) -> None:
@@ -84,16 +63,12 @@ def _check_groups(config: DictConfig) -> None:
         if not isinstance(config.get(key), DictConfig):
             hint = f"; did you mean task={config.get(key)}?" if key == "env" else ""
             raise UsageError(f"{key}={as_yaml(config.get(key))}: must be a group of keys{hint}")
-    named: dict[str, Any] = {key: config.get(key) for key in ("env", "replay", *PAID)}
-    for section in ("controllers", "learners"):
-        named |= {f"{section}.{name}": node for name, node in config[section].items()}
-    named.setdefault("controllers.full", None)
+    named = {"env": config.env, "replay": config.replay}
+    named["controllers.full"] = config.controllers.get("full")
     for key, node in named.items():
-        needed = node is not None or key == "controllers.full"  # null is no part
-        if needed and not (isinstance(node, DictConfig) and "_target_" in node):
-            raise UsageError(
-                f"{key}={as_yaml(node)}: must be a part, a group of keys with _target_"
-            )
+        if not (isinstance(node, DictConfig) and "_target_" in node):
+            line = "must be a part, a group of keys with _target_"
+            raise UsageError(f"{key}={as_yaml(node)}: {line}")
 
 
 def time_limit(env: External | Robot, given: Mapping[str, Any]) -> dict[str, int]:
@@ -136,40 +111,6 @@ def countable(config: DictConfig) -> None:
     """Raise UsageError for more decisions than a counter of 32 bits holds, with the last round."""
     whole("num_envs", config.num_envs, 1, STEPS - 1)
     whole("total_steps", config.total_steps, 1, STEPS - config.num_envs)
-
-
-def check_kinds(node: DictConfig, where: str = "") -> None:
-    """Raise UsageError for a value in `node` that the field of its part cannot hold."""
-    kinds = _kinds(node, where)
-    last = ("controllers", "learners")  # what they refer to has a shorter key
-    for key, value in sorted(node.items(), key=lambda item: item[0] in last):
-        values = value if isinstance(value, ListConfig) else [value]
-        if any(isinstance(item, float) and not abs(item) <= FINITE for item in values):
-            raise UsageError(f"{where}{key}={value}: must be finite")
-        if isinstance(value, DictConfig):
-            check_kinds(value, f"{where}{key}.")
-        kind = tuple if isinstance(value, ListConfig) else type(value)
-        wanted = kinds.get(str(key), {kind})
-        if kind not in wanted and not (kind is int and float in wanted):
-            called = " or ".join(KINDS[known] for known in KINDS if known in wanted)
-            raise UsageError(f"{where}{key}={as_yaml(value)}: must be {called}")
-
-
-def _kinds(node: DictConfig, where: str) -> dict[str, set[type]]:
-    """Field -> the types that it accepts, for those fields of a part whose types are in KINDS."""
-    if "_target_" not in node:
-        return {}
-    try:
-        part = parts.part_class(node._target_)
-    except ValueError as error:
-        raise UsageError(f"{where}_target_={node._target_}: {error}") from error
-    kinds = {}
-    for field in fields(part) if is_dataclass(part) else ():
-        accepted = map(plain, choices(field.type))
-        wanted = {get_origin(kind) or kind for kind in accepted}
-        if wanted <= set(KINDS):
-            kinds[field.name] = wanted
-    return kinds
 
 
 def whole(key: str, value: Any, least: int = 1, most: int | None = None) -> int:

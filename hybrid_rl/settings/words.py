@@ -76,11 +76,6 @@ def typed(texts: Iterable[str]) -> list[str]:
     return [text.removeprefix("++") for text in texts]
 
 
-def key(override: Override) -> str:
-    """The key of the configuration that an override changes."""
-    return override.package or override.key_or_group
-
-
 def raw_values(config: DictConfig) -> dict[str, Any]:
     """`config` with its interpolations as text."""
     raw: Any = OmegaConf.to_container(config, resolve=False)

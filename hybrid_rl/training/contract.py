@@ -13,17 +13,12 @@ import jax.numpy as jnp
 
 from hybrid_rl.core import lifting
 from hybrid_rl.data.trained import SavedPolicy
-from hybrid_rl.protocols import (
-    Controller,
-    Features,
-    Learner,
-    Model,
-    Objective,
-    UniformLearner,
-)
-from hybrid_rl.protocols.contract import Contract, has_users, leaves, of_user, parts, words
+from hybrid_rl.errors import SourceOf
+from hybrid_rl.protocols import Controller, Features, Learner, Model, Objective, UniformLearner
+from hybrid_rl.protocols.contract import Contract, has_users, leaves, of_user, parts
 from hybrid_rl.types import Params, Spec
 
+FIRST = {Model, Features}  # parts that learners use when they begin
 ROLES = {"model": Model, "objective": Objective}  # of a field without a type
 OWNED = tuple(name for name in Params._fields if name not in ("decisions", "world"))
 LEARNED = {"model", "reward", "policy", "critic"}  # fields of Params with parts of their own
@@ -70,14 +65,10 @@ def check(agent: Any, controllers: Iterable[Any]) -> None:
     """
     controllers = list({id(each): each for each in controllers}.values())  # full may be policy
     whole = [*controllers, *agent.learners.values()]
-    owned = {field: learner for learner in agent.learners.values() for field in learner.owns}
-    contracts = [*_contracts(whole, agent.spec)]
-    for of in contracts:
+    for of in [*_contracts(whole, agent.spec)]:
         of.check_members()
-    for of in contracts:
-        if {Model, Features} & {*of.protocol.__mro__} and of_user(of.part):
+        if FIRST & {*of.protocol.__mro__} and of_user(of.part):
             of.check()
-    model = getattr(owned.get("model"), "model", None)
     learned, learning = {}, []
     for learner in agent.learners.values():
         own = lifting.lifted_spec(agent._lifting(learner), agent.spec)
@@ -89,29 +80,33 @@ def check(agent: Any, controllers: Iterable[Any]) -> None:
             of.refuse("params", line)
         learned |= given
         learning.append(of)
+    owned = {field: learner for learner in agent.learners.values() for field in learner.owns}
+    model = getattr(owned.get("model"), "model", None)
     check_parameters(whole, learned, lifting.lifted_spec(model, agent.spec))
+    if not has_users(whole):
+        return
     params = Params(**learned)._replace(decisions=jax.ShapeDtypeStruct((), jnp.int32))
-    if has_users(whole):
-        memory = jax.eval_shape(lambda: agent.replay.init(agent.spec, agent.num_envs))
-        for of in learning:
-            of.values["Params"] = params
-            of.values["batch"] = jax.eval_shape(
-                lambda *given, of=of: agent._batch(given[0], of.part, *given[1:]),
-                *(memory, params, of.values["key"]),
-            )
-            of.trace("update")
-    check_acting(agent, whole, params)
+    memory = jax.eval_shape(lambda: agent.replay.init(agent.spec, agent.num_envs))
+    for of in learning:
+        of.values["Params"] = params
+        of.values["batch"] = jax.eval_shape(
+            lambda *given, of=of: agent._batch(given[0], of.part, *given[1:]),
+            *(memory, params, of.values["key"]),
+        )
+        of.trace("update")
+    check_acting(agent.episode, controllers, whole, params)
 
 
-def check_acting(agent: Any, whole: Iterable[Any], params: Params) -> None:
-    """Raise PartError unless parts fit their protocols, and controllers of the user's act."""
-    whole, env = [*whole], jax.eval_shape(agent.episode.reset, jax.random.key(0))
+def check_acting(
+    episode: Any, controllers: Iterable[Any], whole: Iterable[Any], params: Params
+) -> None:
+    """Raise PartError unless parts of the user's fit their protocols, and the controllers act."""
+    whole, env = [*whole], jax.eval_shape(episode.reset, jax.random.key(0))
     params = params._replace(world=env)
     model = next((part for _, name, _, part in parts(whole) if name == "model" and part), None)
-    spec = lifting.lifted_spec(model if not needs_world(model) else None, agent.spec)
+    spec = lifting.lifted_spec(model if not needs_world(model) else None, episode.spec)
     for of in _contracts(whole, spec):
-        others = {Model, Features, Learner} & {*of.protocol.__mro__}
-        if of_user(of.part) and not others:
+        if of_user(of.part) and not (FIRST | {Learner}) & {*of.protocol.__mro__}:
             own = getattr(of.owner, "model", None) or model
             of.values["Params"] = params
             of.values["x"] = jax.eval_shape(
@@ -119,14 +114,10 @@ def check_acting(agent: Any, whole: Iterable[Any], params: Params) -> None:
                 params,
             )
             of.check()
-    for controller in (each for each in whole if not callable(getattr(each, "update", None))):
-        of = Contract(controller, Controller, agent.spec)
-        of.check_members()
-        greedy = of.source.blamed("greedy", controller.greedy)
-        if not callable(getattr(greedy, "act", None)):
-            of.refuse("greedy", f"returned {words(greedy)}; it must be a controller")
-        for acting in (controller, greedy) if has_users(whole) else ():
-            Contract(acting, Controller, agent.spec, values={"Params": params}).check()
+    for controller in controllers:
+        Contract(controller, Controller, episode.spec, values={"Params": params}).check()
+        greedy = SourceOf(controller).blamed("greedy", controller.greedy)
+        Contract(greedy, Controller, episode.spec, values={"Params": params}).check()
 
 
 def _kind(learner: Any) -> type:

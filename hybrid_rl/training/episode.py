@@ -68,7 +68,7 @@ class Episode:
     def __post_init__(self) -> None:
         for paid, protocol in ((self.reward, Goal), (self.constraint, Constraint)):
             if paid is not None:
-                Contract(paid, protocol, self.env.spec).check_examples()
+                Contract(paid, protocol, self.env.spec).check()
         if len(self.std) not in (1, self.env.spec.obs):
             line = f"must be one number, or {self.env.spec.obs} of them"
             raise FieldError(self, "sensor_noise", line)

@@ -1,6 +1,5 @@
 """Files of policies, demonstrations and maps from anybody: read whole, or refused in one line."""
 
-import ast
 import json
 import warnings
 import zipfile
@@ -16,9 +15,8 @@ from tiny import call
 from hybrid_rl import evaluate
 from hybrid_rl.beliefs.maps import learned
 from hybrid_rl.cli import command
-from hybrid_rl.data import archive, demonstrations, layers
+from hybrid_rl.data import archive, demonstrations
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run import exported
 from hybrid_rl.run import saved as trained
 from hybrid_rl.types import Spec, Transition
 
@@ -206,20 +204,6 @@ def test_words_of_a_file_are_printed_on_one_line(tmp_path, policy, capfd):
     given = [f"policy={tmp_path / 'a.npz'}", "episodes=1"]
     assert call(lambda: command.run(evaluate.main), *given) == 0
     assert "trained by: x\\nhybrid_rl: \\x1b]0;t\\x07 y\n" in capfd.readouterr().out
-
-
-def test_an_exported_program_holds_no_words_of_the_file_but_its_task(tmp_path, policy):
-    """Its code is that of the same policy with another description, but for the name."""
-    np.savez(tmp_path / "a.npz", **described(policy, command='"""\nopen("ran", "w")'))
-    run = trained.read(str(tmp_path / "a.npz"))
-    spec, net = run.episode.spec, exported.layers(run.episode.spec, *run.learner())
-    script = layers.save_numpy(tmp_path / "b.npz", "x.y-z_1", spec, net)
-    tree = ast.parse(script.read_text())
-    assert (ast.get_docstring(tree) or "").startswith("The policy of 'x.y-z_1': obs [")
-    assert "open(" not in script.read_text()
-    with pytest.raises(ValueError, match="a file needs a name"):
-        layers.save_numpy(tmp_path / "c.npz", 'a"""\nimport os', spec, net)
-    assert not (tmp_path / "c.py").exists()
 
 
 def mutated(whole: bytes) -> list[bytes]:

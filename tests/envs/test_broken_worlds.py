@@ -2,7 +2,7 @@
 
 import jax
 import pytest
-from faulty import LINE, STATE, WORLD, changed, refused, world
+from faulty import CRANE, LINE, RAIL, STATE, WORLD, changed, refused, world
 from worlds import TASKS, make
 
 from hybrid_rl.controllers.constant import ConstantController
@@ -11,134 +11,45 @@ from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import Params
 
-CODE = [  # of the world: what is wrong, replaced, by what, the whole line
-    (
-        "reward not a number",
-        "-(x**2).sum()",
-        "jnp.nan * x.sum()",
-        r"w\.py:19: W\.step: reward is nan at decision 1, after obs \[0\..*\] and action \[.*\]",
-    ),
-    (
-        "obs smaller than the spec",
-        "obs=2",
-        "obs=4",
-        r"w\.py:15: W\.reset: returned obs float32\[2\]; it must be float32\[4\], as .* is 4",
-    ),
-    (
-        "reward with an axis",
-        "-(x**2).sum()",
-        "-(x[:1] ** 2)",
-        r"w\.py:19: W\.step: returned reward float32\[1\]; it must be float32\[\]",
-    ),
-    (
-        "terminated a number",
-        STATE,
-        "EnvState(x, x, reward, 0.0, no, {}, {})",
-        r"w\.py:15: W\.reset: returned terminated float32\[\]; it must be bool\[\]",
-    ),
-    (
-        "another dtype in reset",
-        "self._state(x, jnp.zeros(()))",
-        "self._state(x, jnp.zeros(())).replace(data=jnp.zeros(2, int))",
-        r"w\.py:19: W\.step: returned env\.data float32\[2\], reset gave int32\[2\]; both .*",
-    ),
-    (
-        "a list in reset, a tuple in step",
-        "self._state(x, jnp.zeros(()))",
-        "self._state(x, jnp.zeros(())).replace(data=[x[0], x[1]])",
-        r"w\.py:19: W\.step: returned .*",
-    ),
-    (
-        "metrics in step alone",
-        "self._state(x, -(x**2).sum())",
-        "self._state(x, -(x**2).sum()).replace(metrics={'speed': x[0]})",
-        r"w\.py:19: W\.step: returned env\.metrics\['speed'\] float32\[\], reset gave nothing; "
-        r"both must be equal",
-    ),
-    (
-        "a metric that is a vector",
-        STATE,
-        "EnvState(x, x, reward, no, no, {'speed': x})",
-        r"w\.py:15: W\.reset: returned metrics .*speed.*float32\[2\].*; it must be .* numbers",
-    ),
-    (
-        "step returns a tuple",
-        "return self._state(x, -(x**2).sum())",
-        "return x, 0.0, False, False, {}",
-        r"w\.py:19: W\.step: returned a tuple of 5; it must be an EnvState",
-    ),
-    (
-        "no spec",
-        "    spec = Spec(obs=2, act=1, dt=0.05)\n",
-        "",
-        r"w\.py:10: W: spec is None; it must be Spec\(obs=\.\.\., act=\.\.\., dt=\.\.\.\), .*",
-    ),
-    (
-        "step without an action",
-        "def step(self, state, action):",
-        "def step(self, state):",
-        r"w\.py:19: W\.step: must be step\(self, state, action\)",
-    ),
-    (
-        "no reset",
-        "def reset",
-        "def restart",
-        r"w\.py:10: W has no reset; write def reset\(self, key\)",
-    ),
-    (
-        "raise in reset",
-        "x = jax.random.uniform(key, (2,))",
-        'raise ValueError("my table is empty")',
-        r"w\.py:16: W\.reset: ValueError: my table is empty",
-    ),
-    (
-        "an if on a traced value",
-        LINE,
-        "x = state.data if state.data[0] > 0 else -state.data",
-        r"w\.py:20: W\.step: TracerBoolConversionError: .*; write jnp\.where or .* of `if`",
-    ),
-    (
-        "an attribute that changes",
-        LINE,
-        "self.gain = 2.0",
-        r"w\.py:20: W\.step: FrozenInstanceError: cannot assign to field 'gain'; what changes .*",
-    ),
-    (
-        "a random number of NumPy",
-        LINE,
-        "x = state.data + np.random.normal(size=2).astype(np.float32)",
-        r"w\.py:19: W\.step: gives other numbers when it is traced again: what NumPy .*",
-    ),
-    (
-        "an index out of range",
-        "state.data[1], action[0]",
-        "state.data[1], action[1]",
-        r"w\.py:19: W\.step: IndexError: .* index 1 is out of bounds .* size 1; JAX takes the .*",
-    ),
-    (
-        "an index out of range in reset",
-        "x = jax.random.uniform(key, (2,))",
-        "x = jax.random.uniform(key, (2,)); x = x.at[2].set(1.0)",
-        r"w\.py:15: W\.reset: IndexError: .* index 2 is out of bounds .* size 2; JAX takes .*",
-    ),
-    (
-        "an equilibrium without its action",
-        "    def step(self",
-        "    def equilibrium(self):\n        return jnp.zeros(2)\n\n    def step(self",
-        r"w\.py:19: W\.equilibrium: returned float32\[2\]; it must be \(obs, action\)",
-    ),
-    (
-        "an end of the process",
-        LINE,
-        'raise SystemExit("no licence")',
-        r"w\.py:20: W\.step: SystemExit: no licence; raise an error instead of sys\.exit\(\)",
-    ),
+PAID = "-(x**2).sum()"
+METRICS = f"self._state(x, {PAID}).replace(metrics={{'speed': x[0]}})"
+IF = "x = state.data if state.data[0] > 0 else -state.data"
+EQUILIBRIUM = "    def equilibrium(self):\n        return jnp.zeros(2)\n\n    def step(self"
+SITE = "data.qpos, data.site_xpos[0]"
+CODE = [  # of WORLD: replaced, by what, the line after "w.py:LINE: W"
+    ("obs=2", "obs=4", r"\.reset: returned obs float32\[2\]; it must be float32\[4\], .* is 4"),
+    (PAID, "-(x[:1] ** 2)", r"\.step: returned reward float32\[1\]; it must be float32\[\]"),
+    (STATE, "EnvState(x, x, reward, 0.0, no, {}, {})", r"\.reset: returned terminated float32.*"),
+    (f"self._state(x, {PAID})", METRICS, r"\.step: returned env\.metrics\['speed'\] float32.*"),
+    (STATE, "EnvState(x, x, reward, no, no, {'v': x})", r"\.reset: returned metrics .* numbers"),
+    (f"self._state(x, {PAID})", "x, 0.0, False, {}", r"\.step: returned a tuple of 4; it must .*"),
+    ("    spec = Spec(obs=2, act=1, dt=0.05)\n", "", r": spec is None; it must be Spec\(obs=.*"),
+    ("def step(self, state, action):", "def step(self, state):", r"\.step: TypeError: .*"),
+    ("def reset", "def restart", r" has no reset; see protocols\.Env"),
+    ("jnp.stack([", "stack([", r"\.step: NameError: name 'stack' is not defined"),
+    (LINE, IF, r"\.step: TracerBoolConversionError: .*; write jnp\.where or .* of `if`"),
+    (LINE, "self.gain = 2.0", r"\.step: FrozenInstanceError: .*; what changes .*"),
+    ("    def step(self", EQUILIBRIUM, r"\.equilibrium: returned float32\[2\]; .* \(obs, action\)"),
+    (LINE, 'raise SystemExit("no")', r"\.step: SystemExit: no; raise an error instead of .*"),
+]
+SIMULATED = [  # of CRANE, a world in MuJoCo, or of its model, the same
+    ("act=1", "act=2", r"\.step: returned env\.data\.ctrl float32\[2\], reset gave .*"),
+    ('"rail.xml"', '"rial.xml"', r"\.reset: ValueError: .*/rial\.xml: no such file"),
+    ("reset(jnp.zeros(1),", "reset(jnp.zeros(2),", r"\.reset: ValueError: qpos has the shape .*"),
+    ("-x[0] ** 2", 'Physics(ASSET).sensor(data, "hand")[0]', r"\.reset: KeyError: .*'hand'.*"),
+    ("data.qpos, data.qvel", SITE, r"\.reset: AttributeError: a state .* keeps no site_xpos: .*"),
+    ("-x[0] ** 2", 'Physics(ASSET).read(data, "cvel")[0, 0]', r".*reads=\(\) of Physics lacks .*"),
+    ('motor joint="', 'motor joint="un', r"\.reset: ValueError: .*Error: unknown transmission .*"),
+    ('type="slide"', 'kind="slide"', r"\.reset: ValueError: .*/rail\.xml: XML Error: .*, line 3"),
 ]
 
 
-@pytest.mark.parametrize(("old", "new", "line"), [c[1:] for c in CODE], ids=[c[0] for c in CODE])
+@pytest.mark.parametrize(("old", "new", "line"), [*CODE, *SIMULATED])
 def test_a_world_is_refused_in_a_line_with_its_file(folder, old, new, line):
-    refused(line, check, world(folder, changed(WORLD, old, new)))
+    code = WORLD if (old, new, line) in CODE else CRANE
+    assert old in code + RAIL
+    made = world(folder, code.replace(old, new), RAIL.replace(old, new))
+    refused(rf"w\.py:\d+: W{line}", check, made)
 
 
 def test_a_world_may_keep_keys_flags_of_numpy_and_information_of_its_own(folder):
@@ -150,12 +61,6 @@ def test_a_world_may_keep_keys_flags_of_numpy_and_information_of_its_own(folder)
     odd = changed(odd, LINE, "x = state.info['goal'] + jax.random.normal(KEY, (2,))")
     odd = changed(odd, "@dataclass", "KEY = jax.random.key(3)\n\n\n@dataclass")
     assert check(world(folder, odd)) == ()
-
-
-def test_an_index_that_follows_from_the_state_may_be_clamped(folder):
-    """Of a table that is entered at [50 x + 3], x in [0, 1], and has 3 entries."""
-    table = "jnp.arange(3.0)[jnp.int32(50 * state.data[1]) + 3], action[0]"
-    assert check(world(folder, changed(WORLD, "state.data[1], action[0]", table))) == ()
 
 
 def test_a_state_needs_no_metrics_and_no_info(folder):
@@ -175,5 +80,20 @@ def test_a_metric_may_be_any_one_number(folder, value):
 
 @pytest.mark.parametrize("task", TASKS)
 def test_the_worlds_of_the_library_pass(task):
-    """Their numbers are tested in test_worlds.py."""
-    assert check(make(task, "native"), decisions=0) == ()
+    assert check(make(task, "native")) == ()
+
+
+@pytest.mark.parametrize(
+    ("step", "sure"),
+    [
+        ("Physics(ASSET, self.physics).step(state.data, action, 4)", True),
+        ("jax.lax.fori_loop(0, 4, lambda i, x: PHYSICS.step(x, action, 1), state.data)", False),
+    ],
+)
+def test_physics_of_another_time_than_a_decision_is_one_line(folder, step, sure):
+    """Where it is certain: a loop hides how often it steps."""
+    text = changed(CRANE, "Physics(ASSET, self.physics).step(state.data, action, 10)", step)
+    text = changed(text, "import jax.numpy", "import jax\nimport jax.numpy")
+    notes = check(world(folder, changed(text, "\n\n\n@", "\nPHYSICS = Physics(ASSET)\n\n\n@")))
+    says = "makes 4 physics steps of 0.005 s, 0.02 s in all, and spec.dt is 0.05 s; write dt=0.02"
+    assert [says in note for note in notes] == ([True] if sure else [])

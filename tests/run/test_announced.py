@@ -9,8 +9,9 @@ import pytest
 from test_session import SAC
 from tiny import TINY, call_train, rows_of, run
 
-from hybrid_rl import train
+from hybrid_rl.analysis import learning_curves
 from hybrid_rl.errors import WorldError
+from hybrid_rl.run.logs.records import result_line
 from hybrid_rl.run.session import Session
 from hybrid_rl.settings.words import quoted
 
@@ -65,12 +66,12 @@ def test_a_run_ends_with_its_curve(tmp_path, capfd):
 
 def test_the_last_line_has_both_returns():
     values = {"final_eval": [-19.0, None, -20.0], "final_return": [-36.4, None, -36.4]}
-    assert train._result(values) == (
-        "evaluation -19.5 (mean of 2 seeds: -19.0, -, -20.0); "
-        "training return -36.4 over the last tenth (mean of 2 seeds: -36.4, -, -36.4)"
+    assert result_line(values) == (
+        "evaluation -19.5 (mean of 2 seeds); "
+        "training return -36.4 over the last tenth (mean of 2 seeds)"
     )
     one = {"final_eval": [1234.5], "final_return": [None]}
-    assert train._result(one) == "evaluation 1,234.5; training return none yet"
+    assert result_line(one) == "evaluation 1,234.5; training return none yet"
 
 
 def test_the_curve_of_several_seeds_says_what_it_is(tmp_path, capsys):
@@ -80,5 +81,5 @@ def test_the_curve_of_several_seeds_says_what_it_is(tmp_path, capsys):
     ]
     (tmp_path / "metrics.jsonl").write_text("".join(f"{json.dumps(row)}\n" for row in rows))
     (tmp_path / "config.yaml").write_text("task: hopper\nalgo: sac\nseed: 0\n")
-    train._curve(tmp_path)
+    learning_curves.show(tmp_path)
     assert "Evaluation return, interquartile mean of 3 seeds (" in capsys.readouterr().out

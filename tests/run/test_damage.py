@@ -55,7 +55,7 @@ def test_a_damaged_checkpoint_is_passed_over(copied, capfd, damage):
     assert call(lambda: command.run(evaluate.main), f"run={copied}", "episodes=1") == 0
     assert "checkpoint 600 is skipped" in " ".join(capfd.readouterr().out.split())
     assert json.loads((copied / "evaluation_full.json").read_text())["step"] == 500
-    assert call(lambda: command.run(export.main), f"run={copied}", f"out={copied}/a.npz") == 0
+    assert call(lambda: command.run(export.main), f"run={copied}", f"out={copied}/a.stablehlo") == 0
     assert capfd.readouterr().out.count("checkpoint 600 is skipped") == 1
     assert call_train(f"resume={copied}") == 0
     printed = capfd.readouterr()

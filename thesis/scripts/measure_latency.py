@@ -2,12 +2,11 @@
 
     python thesis/scripts/measure_latency.py LABEL=FILE ... > latency.json
 
-FILE is a .stablehlo or a .npz of `python -m hybrid_rl.export`. Each is called REPEATS times after
+FILE is a .stablehlo of `python -m hybrid_rl.export`. Each is called REPEATS times after
 a warm-up, with a new observation; the medians and 99th percentiles are in microseconds. The
 process keeps to one core, and XLA to one thread. hybrid_rl is not imported.
 """
 
-import importlib.util
 import json
 import os
 import platform
@@ -15,20 +14,9 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 REPEATS = 2000
 WARM_UP = 50
-
-
-def numpy_policy(file: Path) -> tuple[Callable, int]:
-    """(act, o) of a .npz and its .py."""
-    import numpy as np
-
-    spec: Any = importlib.util.spec_from_file_location("policy", file.with_suffix(".py"))
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module.act, int(np.load(file)["sizes"][0])
 
 
 def program(file: Path) -> tuple[Callable, int]:
@@ -56,7 +44,7 @@ def measured(file: Path) -> dict[str, float]:
     """Median and 99th percentile [us] of a call."""
     import numpy as np
 
-    act, size = (numpy_policy if file.suffix == ".npz" else program)(file)
+    act, size = program(file)
     xs = np.random.default_rng(0).normal(size=(WARM_UP + REPEATS, size)).astype(np.float32)
     times = []
     for x in xs:

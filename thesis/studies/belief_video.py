@@ -1,4 +1,15 @@
-"""Pictures of training: the scene, and next to it the belief that was learned by then."""
+"""A film of training: the scene, and next to it the belief that was learned by then.
+
+    python -m hybrid_rl.thesis.studies.belief_video run=DIR out=film.mp4
+
+It is the first episode of training of a method that learns a belief over two coordinates, such as a
+map of contacts. A .png is the picture at the end.
+"""
+
+if __name__ == "__main__":
+    from hybrid_rl.cli import interrupt
+
+    interrupt.install()
 
 from collections.abc import Callable
 from pathlib import Path
@@ -6,7 +17,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from hybrid_rl.analysis.drawing import draw
 from hybrid_rl.analysis.style import STYLE, legend_below
+from hybrid_rl.cli import arguments, command
+from hybrid_rl.cli.arguments import Argument, whole
+from hybrid_rl.envs.mujoco import offscreen
+from hybrid_rl.envs.mujoco.scenery import check_drawable, scene_of
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.logs.progress import Progress
 from hybrid_rl.run.machine.jax_settings import prepare
@@ -17,6 +33,15 @@ from hybrid_rl.thesis.studies.recorded import read
 LENGTH = 13.5  # [s] of a video of an episode, at most about
 MOST = {".mp4": 200, ".gif": 100, ".png": 1}  # pictures of an episode
 SIDE = 4.8  # [in] of the panel, by which its letters are scaled
+FAR = 0.01  # of an observation in a replayed scene; more is reported
+ARGUMENTS = (
+    Argument("run", "", "folder of the run", needed="run=DIR"),
+    Argument("out", "belief.mp4", f"the file: {', '.join(MOST)}"),
+    Argument("seed", None, "of a learner; empty: the first", whole(least=0)),
+    Argument("episode_steps", 0, "decisions at most; 0: all", whole()),
+    Argument("width", 640, "of the scene, in pixels", whole(even=True)),
+    Argument("height", 480, "of the scene and of the panel beside it", whole(even=True)),
+)
 
 
 class Film(NamedTuple):
@@ -87,3 +112,23 @@ def _painter(
         return np.asarray(canvas.buffer_rgba())[..., :3].copy()
 
     return paint
+
+
+def main() -> None:
+    """The command."""
+    given, _ = arguments.read(__doc__, ARGUMENTS)
+    out, size = arguments.output("out", given["out"], [*MOST]), (given["width"], given["height"])
+    offscreen.backend()  # raises before minutes of work
+    offscreen.check_size(*size)
+    folder, seed, steps = Path(given["run"]), given["seed"], given["episode_steps"]
+    shown = film(folder, seed, steps, size[1], MOST[out.suffix])
+    check_drawable(shown.world)
+    draw(scene_of(shown.world), shown.poses, out, shown.fps, *size, shown.panel)
+    speed = "" if out.suffix == ".png" else f", {shown.speed:.2g} times real time"
+    print(f"{out}: {shown.decisions} decisions, return {shown.total:,.1f}, of training{speed}")
+    if shown.apart > FAR:
+        print(f"the scene differs by up to {shown.apart:.2g} from the recorded observations")
+
+
+if __name__ == "__main__":
+    command.run(main)

@@ -9,7 +9,6 @@ import pytest
 from studied import drawn
 from tiny import call
 
-from hybrid_rl import render
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.contact_plane import THREE
 from hybrid_rl.run.saved import restore
@@ -85,13 +84,13 @@ def test_frames_have_the_errors_of_the_log(contact_runs: Runs, tmp_path: Path) -
         assert got["map"][name] == pytest.approx(values[SEED], rel=1e-3)
 
 
-def test_render_draws_training(contact_runs: Runs, tmp_path: Path, can_draw: bool) -> None:
+def test_the_film_of_training(contact_runs: Runs, tmp_path: Path, can_draw: bool) -> None:
     """The panel, as wide as high, changes with time."""
     if not can_draw:
         return
     size = "width=64", "height=48", "episode_steps=3"
-    line = f"run={contact_runs['map']}", "mode=training", f"out={tmp_path}/a.gif", *size
-    assert call(lambda: command.run(render.main), *line) == 0
+    line = f"run={contact_runs['map']}", f"out={tmp_path}/a.gif", *size
+    assert call(lambda: command.run(belief_video.main), *line) == 0
     pictures = iio.imread(tmp_path / "a.gif")
     assert pictures.shape == (4, 48, 64 + 48, 3)
     assert (pictures[0, :, 64:] != pictures[3, :, 64:]).any()

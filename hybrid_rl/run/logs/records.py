@@ -49,6 +49,20 @@ def summary_of(file: Path) -> dict[str, Any]:
     return values
 
 
+def result_line(summary: Mapping[str, Any]) -> str:
+    """The last evaluation and training return, with their means over seeds."""
+    parts = []
+    for name, each in (("evaluation", "final_eval"), ("training return", "final_return")):
+        known = [value for value in summary.get(each) or () if value is not None]
+        text = f"{sum(known) / len(known):,.1f}" if known else "none yet"
+        if known and each == "final_return":
+            text += " over the last tenth"  # the rows above have that of the last episode
+        if len(known) > 1:
+            text += f" (mean of {len(known)} seeds)"
+        parts.append(f"{name} {text}")
+    return "; ".join(parts)
+
+
 def _number(value: Any) -> bool:
     return type(value) in (int, float) and abs(value) < LARGE and math.isfinite(value)
 

@@ -111,7 +111,7 @@ def main() -> None:
 
     given, changes = arguments.read(__doc__, ARGUMENTS, GROUPS)
     settings: dict[str, Any] = {**given, **changes}
-    out, rounds = arguments.output("out", settings["out"], (".json",), ".png"), settings["rounds"]
+    out, rounds = arguments.output("out", settings["out"], (".json",)), settings["rounds"]
     _check(settings)
     threads = ["physics=mjx"] if "mjx" in (settings["physics"] or "") else []
     precision = next(iter(settings["precision"]), "auto")
