@@ -29,7 +29,6 @@ from hybrid_rl.run import members as program
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.folder import members, new_folder
-from hybrid_rl.run.machine import distributed
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.run.start import build_new_run
 from hybrid_rl.settings import build as configuration
@@ -212,7 +211,7 @@ class Sweeper:
                 config = config.copy()
                 config.physics = "native"
             try:
-                _check(program.expand_sweep(config, overrides), here(self.config.hydra))
+                _check(program.expand_sweep(config, overrides))
             except (UsageError, OmegaConfBaseException) as error:
                 line = error if isinstance(error, UsageError) else explain(error)
                 raise UsageError(f"{line} ({self._called(number)})") from error
@@ -222,18 +221,13 @@ class Sweeper:
         return f"{self.task.called} {number}: {self.task.labels[number]}".removesuffix(": ")
 
 
-def _check(members: Sequence[program.Member], joins: bool) -> None:
-    """Raise UsageError if a job cannot run, alone or with those that share its program.
-
-    joins: it runs in this process, one of those of distributed=true, which are counted first.
-    """
+def _check(members: Sequence[program.Member]) -> None:
+    """Raise UsageError if a job cannot run, alone or with those that share its program."""
     runs = []
     for each in members:
         if each.config.resume is None:
             check(each.config)
             prepare(each.config)  # first: a check of the user's world initialises JAX
-            if joins and each.config.distributed:
-                distributed.share(each.config)
             runs.append(build_new_run(each.config)[0])
     if len(runs) > 1:
         program.axis_of([member.values for member in members], runs)

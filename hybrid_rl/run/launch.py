@@ -19,7 +19,7 @@ from hybrid_rl.run.job import Job, Output, claim_folders, written
 from hybrid_rl.run.logs import loggers
 from hybrid_rl.run.logs.progress import Progress
 from hybrid_rl.run.logs.records import changes, summary_of
-from hybrid_rl.run.machine import distributed, memory
+from hybrid_rl.run.machine import memory
 from hybrid_rl.run.machine.jax_settings import prepare, refuse_x64
 from hybrid_rl.run.members import Member, axis_of, joined
 from hybrid_rl.run.schedule import Schedule
@@ -30,7 +30,7 @@ from hybrid_rl.settings.build import Run
 from hybrid_rl.settings.values import check, countable, one_of, whole
 
 UNKNOWN = object()  # the value of a key that a configuration does not have
-OF_A_SESSION = ("resume", "total_steps", "run_dir", "version", "distributed", "logger")
+OF_A_SESSION = ("resume", "total_steps", "run_dir", "version", "logger")
 OF_A_SESSION += ("compile_cache", "precision", "recipe", "config_dir")
 ONLY = "with resume only total_steps and precision can be changed"
 
@@ -48,18 +48,11 @@ def train(
     folder, only total_steps and precision may differ. handled: `handled(f)` is a context in which
     the first signal calls f(number).
     """
-    config = members[0].config
-    if config.get("distributed"):
-        check(config)
-        prepare(config)
-        config = distributed.share(config)
-        members = [Member(config)]
-        given = {key: value for key, value in given.items() if key != "distributed"}
-    if config.resume is not None:
+    if members[0].config.resume is not None:
         return _resume(members, given, handled, output)
     for member in members:
         check(member.config)
-    prepare(config)  # first: a check of the user's world initialises JAX's devices
+    prepare(members[0].config)  # first: a check of the user's world initialises JAX's devices
     made = [start.build_new_run(member.config) for member in members]
     return _begin(members, [run for run, _ in made], handled, output, [first for _, first in made])
 

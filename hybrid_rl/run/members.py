@@ -58,8 +58,6 @@ def expand_sweep(config: DictConfig, texts: Sequence[str]) -> list[Member]:
     config.sweep = {}
     for key, values in lists.items():
         _check_values(raw, key, values)
-    if lists and config.get("distributed"):
-        raise UsageError("distributed=true: trains no sweep; use -m, or one process")
     members = []
     for values in product(*lists.values()):
         chosen = dict(zip(lists, values, strict=True))

@@ -31,7 +31,7 @@ from hybrid_rl.training.agent import Agent, AgentState
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import forgotten
 
-OWN = ("random_steps", "pretrain", "run_dir", "freeze", "distributed", "resume", "run")
+OWN = ("random_steps", "pretrain", "run_dir", "freeze", "resume", "run")
 FRESH = ("random_steps=0", "pretrain=0")  # the learners have begun
 FOREIGN = re.compile(r"\$\{[^}]*:|^\+*(hydra|(?!demonstrations=)[\w@]+=[^=]*\.\.)")
 WORLD = ("env", "episode", "constraint", "num_envs")  # keys on which what is remembered depends

@@ -71,8 +71,7 @@ def check(config: DictConfig) -> None:
         raise UsageError(f"eval_modes={as_yaml(modes)}: must be a list of {', '.join(MODES)}")
     if not (isinstance(freeze, ListConfig) and all(type(name) is str for name in freeze)):
         raise UsageError(f"freeze={freeze}: must be a list of learners, as in freeze=[policy]")
-    for key in ("checkpoint_replay", "distributed"):
-        one_of(key, config.get(key, False), (True, False))
+    one_of("checkpoint_replay", config.checkpoint_replay, (True, False))
     for key, known in (("precision", PRECISIONS), ("physics", IMPLEMENTATIONS)):
         one_of(key, config[key], known)
     check_kinds(config)

@@ -31,7 +31,6 @@ from hybrid_rl.settings.groups import options
 from hybrid_rl.tools.tuner import study, tuning
 
 INSTALL = f"hydra/sweeper=tuned: Optuna is not installed; {install('tune')}"
-OWN = ("resume", "distributed")  # keys that trials cannot have
 HINT = "write KEY=choice(A,B), KEY=interval(0.1,0.5), or KEY=tag(log,interval(1e-4,1e-2))"
 
 
@@ -111,7 +110,7 @@ class Tuner(sweep.Sweeper):
         for each in parsed:
             if overrides.is_swept(each.key_or_group):
                 raise UsageError(f"{each.input_line}: not in a study, which chooses values itself")
-            if each.key_or_group in OWN:
+            if each.key_or_group == "resume":
                 raise UsageError(f"{each.input_line}: not in a study, which goes on by run_dir=DIR")
             if each.is_sweep_override() and each.key_or_group == "run_dir":
                 raise UsageError(f"{each.input_line}: a study has one folder")
