@@ -57,7 +57,7 @@ def claim_folder(config: DictConfig) -> Iterator[Path]:
                 yield folder
             finally:
                 if not _trained(folder):
-                    for name in {"config.yaml", "metrics.jsonl", "metrics.csv"} - before:
+                    for name in {"config.yaml", "metrics.jsonl"} - before:
                         (folder / name).unlink(missing_ok=True)
     except BaseException:
         with suppress(OSError):  # it holds something

@@ -115,11 +115,11 @@ class Job:
         logs, stores, several = [], [], len(self.runs) > 1
         for run, run_dir in zip(self.runs, self.folders, strict=True):
             config, more = run.config, {"run_dir": str(run_dir)} if several else {}
-            names = loggers.check(config.get("logger"))
+            wandb = loggers.to_wandb(config.get("logger"))
             settings: Any = OmegaConf.to_container(config)
             stack.enter_context(naming(run_dir))
             log = RunLog(
-                run_dir, run.seeds, settings, names, lambda row, more=more: output(row | more)
+                run_dir, run.seeds, settings, wandb, lambda row, more=more: output(row | more)
             )
             logs.append(stack.enter_context(log))
             own = Loop(run.agent, run.seeds, loop.stride) if several else loop

@@ -76,7 +76,7 @@ def _begin(
     """Run `runs` in new folders."""
     axis, first = axis_of([member.values for member in members], runs), start.joined(starts)
     fits(runs)
-    loggers.check(members[0].config.get("logger"))
+    loggers.to_wandb(members[0].config.get("logger"))
     with claim_folders(members) as folders:
         return _run(Job(runs, folders, axis), handled, output, first)
 

@@ -199,7 +199,7 @@ def test_a_start_that_fails_leaves_the_disk_as_it_was(tmp_path, monkeypatch, cap
             (folder / "x").unlink()
     before = contents(tmp_path)
     monkeypatch.setattr(Loop, "memory", lambda *_: 1e15)
-    assert call_train(*TINY, "algo=sac", "logger=csv", f"run_dir={folder}") == 1
+    assert call_train(*TINY, "algo=sac", f"run_dir={folder}") == 1
     assert "num_seeds=1: the program would take 1,000,000.0 GB" in only_line(capfd)
     assert contents(tmp_path) == before
 
