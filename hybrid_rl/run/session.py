@@ -215,7 +215,7 @@ class Session:
 
     def _end(self, failures: Mapping[int, tuple[int, str]]) -> list[Row]:
         """A row for each learner that diverged just now; failures: learner -> (step, quantity)."""
-        new = self.diverged.add(failures, self.state, self.step)
+        new = self.diverged.add(failures)
         if left := self.diverged.left:  # else the error names it
             for end in new.values():
                 self.progress.note(divergence.note(end, left))

