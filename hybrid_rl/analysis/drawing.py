@@ -79,7 +79,7 @@ def frames(
 
 def _counted(pictures: Iterable[np.ndarray], total: int) -> Iterator[np.ndarray]:
     """The same pictures, with progress on the terminal."""
-    with Progress(total, label="drawing", unit="pictures") as progress:
+    with Progress(total, label="drawing") as progress:
         for number, picture in enumerate(pictures, 1):
             yield picture
             progress.update(number, {})

@@ -229,7 +229,7 @@ def _progress(run: Run, visible: bool) -> Progress:
     config = run.config
     rounds = -(-config.total_steps // config.num_envs)
     label, steady = f"{config.task} {config.algo}", max(run.agent.changes())
-    return Progress(rounds * config.num_envs, label, "decisions", steady, visible)
+    return Progress(rounds * config.num_envs, label, steady, visible)
 
 
 def _schedule(config: DictConfig) -> Schedule:
