@@ -7,7 +7,7 @@
     python -m hybrid_rl.train run=DIR reward=speed reward.target=2 total_steps=5000
 
 A run writes to runs/TASK/ALGO/TIME, or to run_dir=DIR. With three evaluations or more it ends with
-their curve, on the console and in DIR/curve.png. The jobs of a sweep are checked before the first
+their curve, DIR/curve.png. The jobs of a sweep are checked before the first
 one starts; a job that fails does not end the others; jobs that share run_dir=DIR write to DIR/0,
 DIR/1, ... An override that the method does not use is refused; in a sweep, one that none of its
 methods uses. With sweep.KEY=[A,B,C], of numbers alone, these runs are trained side by side, in one
@@ -36,7 +36,6 @@ from hybrid_rl.cli import command, hydra_line, interrupt
 from hybrid_rl.errors import DivergenceError, UsageError
 from hybrid_rl.run import assembled, divergence, folder, launch, members
 from hybrid_rl.run.job import Output
-from hybrid_rl.run.logs import curve
 from hybrid_rl.run.logs.progress import say
 from hybrid_rl.settings import words as overrides
 from hybrid_rl.settings.build import Run
@@ -167,27 +166,22 @@ def _job(config: DictConfig, on_row: OnRow | None = None) -> dict[str, Any]:
 
 
 def _curve(run_dir: Path) -> None:
-    """Print and draw the evaluations of a run, if there are at least CURVE of them."""
-    from hybrid_rl.analysis import curves_picture, learning_curves
+    """Draw the evaluations of a run, if there are at least CURVE of them."""
+    from hybrid_rl.analysis import learning_curves
     from hybrid_rl.figures import save
 
     try:
         lines = learning_curves.curves(run_dir, EVALUATION)
     except UsageError:  # there are none
         return
-    known = np.isfinite(lines[0].iqm)
-    if known.sum() < CURVE:
+    if np.isfinite(lines[0].iqm).sum() < CURVE:
         return
-    drawn = run_dir / "curve.png"
+    drawn, flaw = run_dir / "curve.png", ""
     try:
         save(*learning_curves.figure(run_dir, EVALUATION), drawn)
     except OSError as error:
-        say(f"{drawn}: not written ({error.strerror or error})")
-    seeds = len(lines[0].seeds)
-    mean = f", interquartile mean of {seeds} seeds" if seeds > 1 else ""
-    title = f"{curves_picture.LABELS[EVALUATION]}{mean} ({drawn})"
-    one = curve.drawn(lines[0].x[known], lines[0].iqm[known], title, "decisions")
-    say(one if len(lines) == 1 else title)
+        flaw = f" not written ({error.strerror or error})"
+    say(f"curve of the evaluations: {drawn}{flaw}")
 
 
 def _result(summary: Mapping[str, Any]) -> str:

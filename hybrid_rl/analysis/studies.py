@@ -104,24 +104,11 @@ def styled() -> AbstractContextManager[None]:
 
 
 def save(figure: "Figure", numbers: dict[str, Any], out: Path) -> None:
-    """Write the picture, and its numbers as JSON next to it.
-
-    A JSON file that has these numbers already, such as the one that was redrawn, is left untouched.
-    """
+    """Write the picture, and its numbers as JSON next to it."""
     out.parent.mkdir(parents=True, exist_ok=True)
     undated = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}.get(out.suffix)
     with styled():
         dpi = min(DPI, MOST_PIXELS / figure.get_figwidth())
         with replacing(out) as draft:
             figure.savefig(draft, dpi=dpi, metadata=undated)
-    file, values = out.with_suffix(".json"), json_value(numbers)
-    if not (file.exists() and _content(file) == values):
-        write_text(file, json.dumps(values, indent=1) + "\n")
-
-
-def _content(file: Path) -> Any:
-    """The content of a JSON file; None if it has none."""
-    try:
-        return json.loads(file.read_text(encoding="utf-8"))
-    except (ValueError, RecursionError):
-        return None
+    write_text(out.with_suffix(".json"), json.dumps(json_value(numbers), indent=1) + "\n")

@@ -11,7 +11,6 @@ import shlex
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from datetime import datetime
-from glob import glob
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -26,7 +25,7 @@ from hybrid_rl.run.files.anchors import as_yaml
 from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.files.lock import lock
 from hybrid_rl.run.files.reading import json_file, yaml_file
-from hybrid_rl.run.machine.provenance import git_commit
+from hybrid_rl.run.logs.records import summary_of
 from hybrid_rl.settings.build import CONF
 from hybrid_rl.settings.values import COUNTS, SECTIONS, check_words
 from hybrid_rl.settings.words import quoted
@@ -133,30 +132,13 @@ def read_trained(folder: Path, key: str) -> DictConfig:
 
 def _check_version(folder: Path, key: str, config: DictConfig) -> None:
     """Raise UsageError if another minor version made the run."""
-    version = config.get("version") or _of_summary(folder, "versions", "hybrid_rl")
-    if _minor(version) != _minor(__version__):
-        commit = _of_summary(folder, "git_commit")
+    version, commit = str(config.get("version", f"older than {FIRST}")), None
+    if version.split(".")[:2] != __version__.split(".")[:2]:
+        with suppress(UsageError):
+            commit = summary_of(folder / "summary.json").get("git_commit")
         todo = f"check out its commit, {commit}, or train again" if commit else "train again"
-        raise UsageError(
-            f"{key}={folder}: made by hybrid_rl {version or f'older than {FIRST}'}, and this is "
-            f"{__version__}; {todo}"
-        )
-
-
-def _minor(version: Any) -> list[str]:
-    """The first two numbers of a version."""
-    return str(version).split(".")[:2]
-
-
-def _of_summary(folder: Path, *keys: str) -> str | None:
-    """The value of summary.json at `keys`, one below the other; None if there is none."""
-    try:
-        value: Any = json_file(folder / "summary.json")
-        for key in keys:
-            value = value[key]
-    except (ValueError, KeyError, TypeError):
-        return None
-    return None if value is None else str(value)
+        line = f"made by hybrid_rl {version}, and this is {__version__}; {todo}"
+        raise UsageError(f"{key}={folder}: {line}")
 
 
 @contextmanager
@@ -170,20 +152,7 @@ def blame_config(folder: Path, lacking: bool = False) -> Iterator[None]:
         if isinstance(error, PartError) or (lacking and not absent):  # of a file of the user's own
             raise
         line = f"lacks {error.full_key or error.key}" if absent else str(error).partition("\n")[0]
-        line = f"{path}: {line.removeprefix(f'{path}: ')}{of_another_commit(folder)}"
-        raise UsageError(line) from error
-
-
-def of_another_commit(folder: Path) -> str:
-    """The end of a line about a run that another commit of this version made; else empty."""
-    commit = other_commit(folder)
-    return f"; made at another commit: check out {commit}, or train again" if commit else ""
-
-
-def other_commit(folder: Path) -> str:
-    """The commit that made the run in `folder`; empty if it is this one, or not known."""
-    commit = _of_summary(folder, "git_commit")
-    return "" if commit in (None, git_commit()) else commit
+        raise UsageError(f"{path}: {line.removeprefix(f'{path}: ')}") from error
 
 
 def members(folder: Path) -> dict[Path, dict[str, float]]:
@@ -226,19 +195,15 @@ def parse_config(folder: Path, key: str = "runs") -> DictConfig:
         parts.check({**values, "recipe": str(values.get("recipe"))}, folder)
     except ValueError as error:
         _check_version(folder, key, config)  # another one may have had such a part
-        raise UsageError(f"{path}: {error}{of_another_commit(folder)}") from error
+        raise UsageError(f"{path}: {error}") from error
     defaults: Any = OmegaConf.load(CONF / "train.yaml")
     config.compile_cache = defaults.compile_cache
     return config
 
 
 def _instead(folder: Path, key: str) -> str:
-    """The line about a folder without config.yaml, which may hold other folders of runs."""
+    """The line about a folder without config.yaml, which may hold a sweep."""
     if runs := members(folder):
         listed = ", ".join(f"{run} ({words(values)})" for run, values in runs.items())
         return f"holds a sweep; give one of its runs: {listed}"
-    below = ("", "/*", "/*/*") if folder != Path() else ()  # "": of an empty variable
-    found = [file for tail in below for file in glob(f"{folder}{tail}/config.yaml")]  # a pattern
-    newest = max(found, key=lambda file: Path(file).stat().st_mtime, default="")
-    hint = f"; the newest is {key}={Path(newest).parent}" if newest else ""
-    return f"no run folder there (no config.yaml in it){hint}"
+    return "no run folder there (no config.yaml in it)"

@@ -29,9 +29,9 @@ from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings.build import Run
 from hybrid_rl.settings.values import check, countable, one_of, whole
 
-UNKNOWN = object()  # the value of a key that a configuration does not have
 OF_A_SESSION = ("resume", "total_steps", "run_dir", "version", "logger")
 OF_A_SESSION += ("compile_cache", "precision", "recipe", "config_dir")
+FREE = ("resume", "total_steps", "compile_cache", "precision")  # keys of a resumed run
 ONLY = "with resume only total_steps and precision can be changed"
 
 Handler = Callable[[Callable[[int], None]], AbstractContextManager]
@@ -88,29 +88,23 @@ def _resume(
     parent = Path(str(wanted[0].config.resume))
     swept = {refuse_link(run_dir): values for run_dir, values in folder.members(parent).items()}
     values = swept or {parent: {}}
-    typed = dict(zip(values, cycle(wanted), strict=False))  # one, or one for each
-
-    def settings(run_dir: Path) -> DictConfig:
-        own = typed[run_dir].config.copy()
-        own.resume = str(run_dir)
-        return _settings(own, given)
-
-    ends = [_done(settings(run_dir), run_dir) for run_dir in values]
-    if done := [end for end in ends if end is not None and None not in ends]:
+    typed = zip(values, cycle(wanted), strict=False)  # one, or one for each
+    configs = {run_dir: _settings(member.config, run_dir, given) for run_dir, member in typed}
+    done = [_done(config, run_dir) for run_dir, config in configs.items()]
+    if ends := [end for end in done if end is not None and None not in done]:
         if output.progress:
-            line = f"already finished ({done[0]['total_steps']:,} steps)"
+            line = f"already finished ({ends[0]['total_steps']:,} steps)"
             print(f"{parent}: {line}; raise total_steps to continue")
-        return joined([*values], done) | {"signal": None}
+        return joined([*values], ends) | {"signal": None}
     with ExitStack() as stack:
         runs = []
-        for run_dir in values:
+        for run_dir, config in configs.items():
             stack.enter_context(lock(run_dir, "resume"))
-            own = settings(run_dir)  # again, as another process may have continued the run
             with folder.blame_config(run_dir):
-                check(own)
-                prepare(own)
-                runs.append(configuration.built(own))
-            refuse_edits(own, run_dir)
+                check(config)
+                prepare(config)
+                runs.append(configuration.built(config))
+            refuse_edits(config, run_dir)  # also those of a process that had it until now
         axis = axis_of([*values.values()], runs)
         return _run(Job(runs, [*values], axis), handled, output)
 
@@ -170,18 +164,18 @@ def _notes(job: Job) -> list[str]:
     return notes
 
 
-def _settings(config: DictConfig, given: Mapping[str, str]) -> DictConfig:
-    """The configuration of the run that `config` resumes, with what the user may change."""
-    run_dir = Path(str(config.resume))
+def _settings(config: DictConfig, run_dir: Path, given: Mapping[str, str]) -> DictConfig:
+    """The configuration of the run in `run_dir`, with what the user may change.
+
+    config: what the user's command composes, which may be that of the run again.
+    """
     old = folder.read_trained(run_dir, "resume")
-    free = {"resume", "total_steps", "compile_cache", "precision"}
-    given = {key.removeprefix("sweep."): value for key, value in given.items()}
-    groups = {key: OmegaConf.select(old, key, default=UNKNOWN) is UNKNOWN for key in given}
-    for key in sorted(given.keys() - free, key=lambda key: groups[key]):  # a changed value is named
-        before, now = (OmegaConf.select(c, key, default=UNKNOWN) for c in (old, config))
-        if not (_same(old, config) if before is UNKNOWN else before == now):
-            has = "" if before is UNKNOWN else f"; the run in resume={run_dir} has {before}"
-            raise UsageError(f"{key}={given[key]}: {ONLY}{has}")
+    others = [key.removeprefix("sweep.") for key in given if key not in FREE]
+    if others and not _same(old, config):
+        pairs = {key: [OmegaConf.select(made, key) for made in (old, config)] for key in others}
+        wrong = next((key for key, (then, now) in pairs.items() if then != now), others[0])
+        value = given.get(wrong, pairs[wrong][1])
+        raise UsageError(f"{wrong}={value}: {ONLY}; resume={run_dir} has its own")
     if "total_steps" in given:
         steps = whole("total_steps", config.total_steps)
         if steps < whole("total_steps", old.total_steps):
@@ -189,7 +183,7 @@ def _settings(config: DictConfig, given: Mapping[str, str]) -> DictConfig:
             raise UsageError(f"total_steps={steps}: {line}; it can be raised, not lowered")
         old.total_steps = steps
         countable(old)
-    old.resume, old.compile_cache = config.resume, config.compile_cache
+    old.resume, old.compile_cache = str(run_dir), config.compile_cache
     if "precision" in given:
         old.precision = one_of("precision", config.precision, precision.PRECISIONS)
     return old

@@ -31,7 +31,6 @@ from hybrid_rl.outside.acting import Exploring, numbers
 from hybrid_rl.outside.learner import RowLearner, RowLoop
 from hybrid_rl.outside.row_log import row_type
 from hybrid_rl.run import folder as run_folder
-from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.checkpoints.store import Record, Store
 from hybrid_rl.run.files.lock import lock
 from hybrid_rl.run.job import written
@@ -225,7 +224,6 @@ class OnlineLearner:
             self._advance()
         with _writable(folder) as path, self._lock:
             store = Store(path / "checkpoints", self._loop, True, written(self.config))
-            store.known = set(checkpoint.steps(store.folder))
             store.save(learner.state, Gathered(), Record([[]], [None], step=learner.read))
             run_folder.write(path, self.config)
 

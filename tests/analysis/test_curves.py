@@ -72,11 +72,6 @@ def test_methods_are_compared_as_far_as_both_ran(tmp_path):
     assert any(line in each for each in summary(numbers))
 
 
-def test_several_values_at_one_step_are_one_point(tmp_path):
-    (curve,) = curves(run(tmp_path / "a", [(10, 1.0), (10, 3.0), (20, 5.0)]))
-    assert (curve.x.tolist(), curve.iqm.tolist()) == ([10, 20], [2, 5])
-
-
 def test_seeds_without_common_steps_meet_on_a_straight_line(tmp_path):
     """Both seeds lie on y = x, so the curve must."""
     rng = np.random.default_rng(0)
@@ -137,13 +132,6 @@ def test_a_start_that_failed_is_no_run(tmp_path):
     folder = run(tmp_path / "a", [1.0])
     (curve,) = curves(f"{tmp_path}/*")
     assert (curve.runs, curve.notes) == ((str(folder),), ())
-
-
-def test_a_task_without_the_metric_is_left_out_with_a_note(tmp_path):
-    run(tmp_path / "a", [1.0], metric="planner/lyapunov")
-    run(tmp_path / "b", [1.0], metric="belief/best", task="no_dynamics", algo="bayesopt")
-    (curve,) = curves(tmp_path, "planner/lyapunov")
-    assert (curve.task, curve.notes) == ("hopper", ("no_dynamics, bayesopt: no planner/lyapunov",))
 
 
 def test_failed_evaluations_count_and_cut_nothing(tmp_path):
@@ -247,14 +235,6 @@ def test_a_run_in_progress_is_read_up_to_its_last_complete_row(tmp_path):
     (curve,) = curves(folder)
     assert (curve.x.tolist(), curve.iqm.tolist()) == ([10, 20], [1, 3])
     assert curve.notes == (f"hopper, sac: the last row of {folder} is incomplete; left out",)
-
-
-def test_what_does_not_exist_is_named_with_what_does(tmp_path):
-    run(tmp_path / "a", [1.0], metric="eval/return")
-    with pytest.raises(UsageError, match=r"metric=train/return: .* they have eval/return"):
-        curves(tmp_path)
-    with pytest.raises(UsageError, match=r"runs=.*nowhere.*: no run there"):
-        curves(tmp_path / "nowhere*")
 
 
 def test_runs_are_found_by_glob_by_folder_and_by_list(tmp_path):

@@ -67,18 +67,10 @@ def test_a_word_that_reads_as_a_number_stays_a_word():
     values = {"a": "1e-3", "b": "12", "c": "on", "d": 1e-3, "e": None, "f": ["1", 2], "g": True}
     part = {"_target_": "a.B", **values}
     text = run_folder.as_yaml(OmegaConf.create({"x": part, "y": {"x": part}, "z": [[1], [2]]}))
-    assert text.count("&x") == text.count("*x") == 1
+    assert text.count(" &") == text.count(" *") == 1
     again = OmegaConf.create(text)
     assert again == {"x": part, "y": {"x": part}, "z": [[1], [2]]}
     assert all(type(again.x[key]) is type(value) for key, value in values.items() if key != "f")
-
-
-def test_equal_keys_of_different_parts_have_anchors_of_their_own():
-    one, two = {"_target_": "a.One"}, {"_target_": "a.Two"}
-    tree = {"part": one, "second": {"part": two}, "third": [0], "again": {"a": one, "b": two}}
-    text = run_folder.as_yaml(OmegaConf.create(tree))
-    assert OmegaConf.create(text) == tree
-    assert "&part_2" in text
 
 
 def test_a_fresh_process_evaluates_and_resumes(trained, tmp_path):
@@ -107,7 +99,7 @@ def test_a_run_of_an_older_version_is_one_line_and_stays(old, tmp_path, capfd, c
         assert call(lambda: command.run(READERS[command_name]), *words) == 2
     key = "resume" if command_name == "train" else "run"
     assert only_line(capfd) == (
-        f"hybrid_rl: {key}={old}: made by hybrid_rl 0.1.0, and this is {__version__}; "
+        f"hybrid_rl: {key}={old}: made by hybrid_rl older than 0.2, and this is {__version__}; "
         f"check out its commit, {commit}, or train again\n"
     )
     assert contents(tmp_path) == before

@@ -179,12 +179,3 @@ def test_environments_of_which_no_learner_fits_are_named(monkeypatch):
     )
     with pytest.raises(MemoryError, match=r"; lower num_envs, too$"):
         memory.check(loop, None)
-
-
-def test_what_cannot_be_deleted_stays(tmp_path):
-    stuck = tmp_path / "run" / "checkpoints" / ".7.pruned.tmp"
-    stuck.parent.mkdir(parents=True)
-    stuck.write_text("mine")
-    run(tmp_path / "run", "algo=sac")
-    assert checkpoint.steps(stuck.parent) == [500, 600]
-    assert stuck.read_text() == "mine"

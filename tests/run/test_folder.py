@@ -2,10 +2,8 @@
 
 import errno
 import json
-import os
 import re
 import shutil
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -92,30 +90,6 @@ def test_an_empty_configuration_has_no_report(copied, capfd):
     harm(copied, "empty")
     assert call(lambda: command.run(report.main), f"run={copied}", "video=none") == 2
     assert "config.yaml: is empty" in only_line(capfd)
-
-
-@pytest.mark.parametrize("kind", ["no env", "no physics", "value", "module"])
-def test_what_another_commit_wrote_says_which(copied, capfd, kind):
-    words, summary = harm(copied, kind), json.loads((copied / "summary.json").read_text())
-    (copied / "summary.json").write_text(json.dumps(summary | {"git_commit": "1a2b3c"}))
-    assert call(lambda: command.run(evaluate.main), f"run={copied}") == 2
-    line = only_line(capfd)
-    assert words in line
-    assert line.endswith("; made at another commit: check out 1a2b3c, or train again\n")
-
-
-@pytest.mark.parametrize("given", ["runs/pendulum/sac", "runs/pendulum", "runs/*/sac/*"])
-def test_a_folder_of_runs_names_the_newest(tmp_path, monkeypatch, given):
-    monkeypatch.chdir(tmp_path)
-    for age, name in ((9, "b"), (1, "a"), (5, "c")):
-        file = tmp_path / "runs/pendulum/sac" / name / "config.yaml"
-        file.parent.mkdir(parents=True)
-        file.touch()
-        os.utime(file, (1e9 - age, 1e9 - age))
-    with pytest.raises(UsageError, match=r"; the newest is run=runs/pendulum/sac/a$"):
-        run_folder.read(Path(given), "run")
-    with pytest.raises(UsageError, match=r"run=: no run folder there \(no config.yaml in it\)$"):
-        run_folder.read(Path(), "run")
 
 
 def test_a_run_goes_on_only_with_the_settings_that_it_began_with(copied, capfd):

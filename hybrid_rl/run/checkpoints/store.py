@@ -1,6 +1,6 @@
 """The checkpoints of a run: the learners' state, its record, and the metrics since the last row."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
@@ -64,6 +64,13 @@ def concatenated(states: Sequence[Any]) -> Any:
     return jax.tree.map(lambda *leaves: jnp.concatenate(leaves), *states)
 
 
+def by_learner(change: Callable[[Any], Any], memory: Any) -> Any:
+    """The results [S, ...] of `change` for the memory of each learner."""
+    learners = range(len(memory.count))
+    each = [change(jax.tree.map(lambda leaf, s=s: leaf[s], memory)) for s in learners]
+    return jax.tree.map(lambda *leaves: jnp.stack(leaves), *each)
+
+
 @dataclass
 class Store:
     """Checkpoints of `loop` in `folder`; replay: whether they hold the replay memory.
@@ -76,7 +83,6 @@ class Store:
     replay: bool
     settings: Mapping[str, Any]
     newest: int | None = None  # step of the checkpoint that was written or read last
-    known: set[int] = field(default_factory=set)  # checkpoints that may be deleted
 
     def save(self, state: Any, gathered: Gathered, record: Record) -> None:
         """Write a checkpoint of the run."""
@@ -93,57 +99,46 @@ class Store:
             "gathered": {"names": names, "shape": [] if array is None else list(array.shape)},
             "record": asdict(record),
         }
-        checkpoint.save(self.folder, record.step, leaves, meta, known=self.known)
-        self.known.add(record.step)
+        checkpoint.save(self.folder, record.step, leaves, meta)
         self.newest = record.step
 
     def restore(self, step: int | None = None) -> tuple[Any, Gathered, Record, list[str]]:
         """(state, metrics since the last row, record, notes) of the newest sound checkpoint.
 
-        The replay memory is empty if checkpoints do not hold it. step: of another checkpoint.
+        step: of another checkpoint.
         """
-        self.known = set(checkpoint.steps(self.folder))
-        like = self.loop.shapes().replace(memory=None)
-        self.newest, state, meta, notes = checkpoint.restore(self.folder, like, step)
-        memory = self._memory(meta["capacity"]) if self.replay else self.loop.init().memory
+        state, meta, notes = self._state(step)
         gathered, packed = Gathered(), meta.get("gathered", {})
         if packed.get("names"):
-            array = jax.ShapeDtypeStruct(tuple(packed["shape"]), np.float32)
-            gathered.unpack(packed["names"], self._read({"gathered": array})["gathered"])
+            like = {"gathered": jax.ShapeDtypeStruct(tuple(packed["shape"]), np.float32)}
+            array = checkpoint.restore(self.folder, like, self.newest)[1]["gathered"]
+            gathered.unpack(packed["names"], array)
         record = Record(**meta["record"])
         record.learning = Speed(**meta["record"]["learning"])
-        return self.loop.on_devices(state.replace(memory=memory)), gathered, record, notes
+        return self.loop.on_devices(state), gathered, record, notes
 
     def learner(self, number: int) -> Any:
         """AgentState [...] of one learner in the newest checkpoint, or else its first one."""
-        key = jax.random.key(self.loop.seeds[number])
         if self.newest is None:
-            return jax.jit(self.loop.agent.init)(key)
-        shapes = self.loop.shapes()
-        like = shapes if self.replay else shapes.replace(memory=None)
-        one = jax.tree.map(lambda rows: rows[number], self._read(like))
-        if self.replay:
-            return one
-        return one.replace(memory=jax.jit(self.loop.agent.init)(key).memory)
+            return jax.jit(self.loop.agent.init)(jax.random.key(self.loop.seeds[number]))
+        return jax.tree.map(lambda leaf: leaf[number], self._state(self.newest)[0])
 
-    def _read(self, like: Any) -> Any:
-        """A part of the newest checkpoint."""
-        return checkpoint.restore(self.folder, like, self.newest)[1]
+    def _state(self, step: int | None) -> tuple[Any, dict[str, Any], list[str]]:
+        """(state, meta, notes) of a checkpoint; its memory is empty if checkpoints hold none."""
+        like = self.loop.shapes().replace(memory=None)
+        self.newest, state, meta, notes = checkpoint.restore(self.folder, like, step)
+        memory = self._memory(meta["capacity"]) if self.replay else self.loop.init().memory
+        return state.replace(memory=memory), meta, notes
 
     def _memory(self, capacity: int) -> Any:
         """The checkpoint's replay memory, which held `capacity`, in the size that it has now.
 
-        Extending a run may enlarge the memory. One that is bounded by the length of the run has not
-        wrapped, so padding suffices.
+        Extending a run may enlarge the memory.
         """
         agent = with_capacity(self.loop.agent, capacity)
         memory = read_part(self.folder, agent, self.loop.seeds, "memory", self.newest)[1].memory
-
-        def grown(old: jax.Array, now: Any) -> jax.Array:
-            ends = zip(old.shape, now.shape, strict=True)
-            return jnp.pad(old, [(0, size - filled) for filled, size in ends])
-
-        return jax.tree.map(grown, memory, self.loop.shapes().memory)
+        now = self.loop.agent.replay
+        return memory if capacity == now.capacity else by_learner(now.resized, memory)
 
 
 @dataclass
