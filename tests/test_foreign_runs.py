@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 from foreign import METRIC, changed, made, refused
-from tiny import call, call_train, contents, only_line
+from tiny import call, only_line
 
-from hybrid_rl import demonstrate, evaluate, export, figures, render
+from hybrid_rl import evaluate, figures
 from hybrid_rl.cli import command
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import folder as run_folder
@@ -16,13 +16,6 @@ from hybrid_rl.thesis.studies import recorded
 from hybrid_rl.tools.report import __main__ as report
 
 SYSTEM = {"_target_": "os.system", "command": "true"}
-COMMANDS = {
-    "evaluate": evaluate.main,
-    "report": report.main,
-    "export": export.main,
-    "render": render.main,
-    "demonstrate": demonstrate.main,
-}
 
 
 @pytest.fixture
@@ -49,44 +42,23 @@ def test_a_section_that_holds_no_part_is_refused(folder, keys, words):
 @pytest.mark.parametrize(
     "name",
     [
-        *(
-            "os.system",
-            "builtins.exec",
-            "pydoc.pipepager",
-            "subprocess.run",
-            "this.s",
-            "numpy.save",
-        ),
-        *("antigravity.webbrowser", "yaml.unsafe_load", "__main__.x", "site.main", "pytest.main"),
+        *("os.system", "builtins.exec", "numpy.save", "antigravity.webbrowser", "__main__.x"),
         "hybrid_rl.run.files.integrity.write_text",
-        "hybrid_rl.analysis.results.RunFolder",
         "hybrid_rl.settings.build.Path",
-        "hybrid_rl.settings.build.Run",
         "hybrid_rl.types.Spec",
-        "hybrid_rl.data.trained.Path",
         "hybrid_rl.data.trained.save",
         "hybrid_rl.envs..os",
-        "hybrid_rl..os.system",
         "hybrid_rl.run.machine.provenance.subprocess.run",
         "hybrid_rl.envs.analytic.pendulum.jax.numpy.save",
         "hybrid_rl.envs.analytic.pendulum.dataclass",
         "hybrid_rl.envs.analytic.pendulum.Pendulum.reset",
         "hybrid_rl.scripts.bootstrap.main",
-        "hybrid_rl.theirs.run.zz_evil.World",
         "hybrid_rl.envs.analytic",
-        "hybrid_rl",
         "h\u0443brid_rl.envs.analytic.pendulum.Pendulum",  # a Cyrillic letter
-        "os\uff0esystem",
-        " os.system",
         "os.system\n",
-        "os/system",
         "../os.system",
         "theirs.run.zz_evil.World",
-        "theirs.zz_evil.World",
-        "",
-        None,
-        5,
-        ["os.system"],
+        *("", None, 5, ["os.system"]),
         SYSTEM,
     ],
     ids=ascii,
@@ -103,12 +75,8 @@ def test_a_name_that_is_no_part_is_refused(folder, name):
     [
         ({"extra": SYSTEM}, "extra._target_"),
         ({"_target_": "os.system"}, "_target_"),
-        ({"extra": [1, SYSTEM]}, "extra.1._target_"),
         ({"extra": [[[SYSTEM]]]}, "extra.0.0.0._target_"),
         ({"extra": {"_args_": [SYSTEM]}}, "extra._args_.0._target_"),
-        ({"extra": {"_partial_": True, "a": SYSTEM}}, "extra.a._target_"),
-        ({"extra": {"_recursive_": False, "a": SYSTEM}}, "extra.a._target_"),
-        ({"hydra": {"launcher": SYSTEM}}, "hydra.launcher._target_"),
         ({"expert": SYSTEM}, "expert._target_"),
     ],
     ids=lambda given: given if isinstance(given, str) else "",
@@ -117,29 +85,6 @@ def test_it_is_refused_wherever_it_stands(folder, keys, at):
     changed(folder, **keys)
     assert refused(folder).startswith(f"{folder}/config.yaml: {at}=os.system: is no part of")
     assert "=os.system: is no part" in refused(folder, recorded.read)
-
-
-@pytest.mark.parametrize("name", COMMANDS)
-def test_every_command_refuses_it(folder, capfd, name):
-    changed(folder, extra=[{"_target_": "hybrid_rl.run.files.integrity.write_text", "path": "ran"}])
-    before = contents(folder)
-    given = [f"run={folder}", *(["out=a.npz"] if name == "export" else [])]
-    if name == "report":  # its page has the curves; only the film needs the parts
-        assert call(lambda: command.run(report.main), *given) == 0
-        assert "is no part of hybrid_rl" in (folder / "report.html").read_text()
-        (folder / "report.html").unlink()
-    else:
-        assert call(lambda: command.run(COMMANDS[name]), *given) == 2
-        assert "write_text: is no part of hybrid_rl" in only_line(capfd)
-    assert contents(folder) == before
-    assert not Path("ran").exists()
-
-
-def test_a_run_is_not_resumed_with_it(folder, capfd):
-    changed(folder, extra=SYSTEM)
-    (folder / "checkpoints" / "5").mkdir(parents=True)
-    assert call_train(f"resume={folder}", "total_steps=200") == 2
-    assert "extra._target_=os.system: is no part of hybrid_rl" in only_line(capfd)
 
 
 def test_a_class_of_the_user_is_a_part_and_a_function_is_none(folder):

@@ -1,15 +1,11 @@
 """The config.yaml of a run folder is read back or blamed in one line; a start undoes itself."""
 
-import errno
-import json
 import re
-import shutil
 
-import numpy as np
 import pytest
 from tiny import TINY, call, call_train, contents, only_line, run
 
-from hybrid_rl import evaluate, render
+from hybrid_rl import evaluate
 from hybrid_rl.cli import command
 from hybrid_rl.errors import UsageError, WorldError
 from hybrid_rl.run import folder as run_folder
@@ -17,12 +13,9 @@ from hybrid_rl.run.files import integrity
 from hybrid_rl.run.files.lock import lock
 from hybrid_rl.settings.build import load
 from hybrid_rl.tools.doctor.__main__ import examine
-from hybrid_rl.tools.report import __main__ as report
 from hybrid_rl.training.loop import Loop
 
 pytestmark = pytest.mark.turns(3)
-
-READERS = {"evaluate": evaluate.main, "render": render.main}
 
 
 @pytest.fixture(scope="module")
@@ -73,23 +66,15 @@ def harm(folder, kind):
 def test_a_damaged_configuration_is_blamed_on_its_file(copied, capfd, kind):
     words = harm(copied, kind)
     before = contents(copied)
-    lines = []
-    for name, main in READERS.items():
-        assert call(lambda main=main: command.run(main), f"run={copied}") == 2, name
-        lines.append(only_line(capfd))
-        assert words in lines[-1]
+    assert call(lambda: command.run(evaluate.main), f"run={copied}") == 2
+    lines = [only_line(capfd)]
+    assert words in lines[0]
     assert call_train(f"resume={copied}", "total_steps=200") == 2
     lines.append(only_line(capfd))
     assert OF_RESUME.get(kind, words) in lines[-1]
     for line in lines:
         assert line.startswith(f"hybrid_rl: {copied}/config.yaml"), line
     assert contents(copied) == before
-
-
-def test_an_empty_configuration_has_no_report(copied, capfd):
-    harm(copied, "empty")
-    assert call(lambda: command.run(report.main), f"run={copied}", "video=none") == 2
-    assert "config.yaml: is empty" in only_line(capfd)
 
 
 def test_a_run_goes_on_only_with_the_settings_that_it_began_with(copied, capfd):
@@ -113,30 +98,6 @@ def test_a_run_goes_on_only_with_the_settings_that_it_began_with(copied, capfd):
     assert "total_steps was 100 and is 60; put it back" in only_line(capfd)
     path.write_text(text.replace("compile_cache: null", "compile_cache: elsewhere"))
     assert call_train(f"resume={copied}", "total_steps=150") == 0  # of this machine, not the run
-
-
-def test_an_evaluation_of_a_run_that_cannot_be_written_to_is_shown(copied, monkeypatch, capfd):
-    def read_only(path, text):
-        raise OSError(errno.EROFS, "Read-only file system", str(path))
-
-    monkeypatch.setattr(evaluate, "write_text", read_only)
-    assert call(lambda: command.run(evaluate.main), f"run={copied}", "episodes=1") == 0
-    printed = capfd.readouterr().out
-    assert "mean return" in printed
-    assert f"not written: {copied}/evaluation_full.json: Read-only file system" in printed
-
-
-def test_an_evaluation_in_a_pipe_keeps_its_paths_whole(trained, tmp_path, capfd):
-    """And ends with a row for the episodes of all seeds."""
-    folder = shutil.copytree(trained, tmp_path / ("long" * 20) / "run")
-    assert call(lambda: command.run(evaluate.main), f"run={folder}", "episodes=2") == 0
-    lines = capfd.readouterr().out.splitlines()
-    assert f"{folder}, mode full, step 100" in lines
-    assert f"2 episodes a seed; written to {folder}/evaluation_full.json" in lines
-    returns = np.array(json.loads((folder / "evaluation_full.json").read_text())["returns"])
-    (row,) = [line.split("\u2502")[1:-1] for line in lines if " all " in line]
-    wanted = (returns.mean(), returns.std(), returns.min(), returns.max())
-    assert [cell.strip() for cell in row] == ["all", *(f"{value:,.1f}" for value in wanted)]
 
 
 def test_a_broken_world_is_not_blamed_on_the_file(tmp_path):

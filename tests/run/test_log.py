@@ -126,16 +126,6 @@ def test_versions_commit_and_device_are_reported():
     assert re.match(r"(cpu|gpu|tpu): .+", provenance.device())
 
 
-def test_the_commit_of_another_checkout_is_not_ours(monkeypatch, tmp_path):
-    monkeypatch.setattr(provenance, "__file__", str(tmp_path / "a" / "b" / "c" / "d.py"))
-    assert provenance.git_commit() is None
-    ours = provenance.Path(__file__).resolve().parents[2] / "hybrid_rl" / "run" / "logs" / "log.py"
-    monkeypatch.setattr(provenance, "__file__", str(ours))
-    before = provenance.git_commit()
-    monkeypatch.setenv("GIT_DIR", str(tmp_path))  # as in a hook
-    assert provenance.git_commit() == before
-
-
 @pytest.fixture
 def now(monkeypatch):
     """The clock [s] of a display, in a list; its own thread stands still."""

@@ -128,18 +128,6 @@ def test_what_was_imagined_is_kept_only_where_nothing_changed(source, monkeypatc
     assert seen
 
 
-def test_a_group_that_is_newer_than_the_run_is_changed_all_the_same(source, tmp_path):
-    folder = tmp_path / "older"
-    shutil.copytree(source, folder)
-    older = OmegaConf.load(folder / "config.yaml")
-    del older.episode.randomise
-    OmegaConf.save(older, folder / "config.yaml")
-    made = members.load([f"run={folder}", "episode.randomise.mass=[0.7,1.3]"])[0].config
-    assert made.episode.randomise.mass == [0.7, 1.3]
-    assert made.episode.randomise.friction is None
-    assert made.episode.steps == 40
-
-
 def test_a_key_that_the_run_lacks_is_named(source, tmp_path):
     folder = tmp_path / "older"
     shutil.copytree(source, folder)
@@ -168,15 +156,6 @@ def test_the_memory_is_empty_where_it_would_be_false(source, given, words):
     if "env.damping=true" in given:
         assert made.env.damping
         assert made.reward is None or made.reward.world.damping
-
-
-def test_one_learner_begins_several(source):
-    _, loop, state, _ = begun(source, "num_seeds=3", "seed=7")
-    assert loop.seeds == (7, 8, 9)
-    for leaf in jax.tree.leaves(jax.device_get((state.learners, state.memory))):
-        assert len(leaf) == 3
-        assert np.array_equal(leaf[0], leaf[2])
-    assert not np.array_equal(state.env.obs[0], state.env.obs[1])
 
 
 def test_learners_that_are_too_few_or_diverged_begin_nothing(source, monkeypatch):
