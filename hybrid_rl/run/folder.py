@@ -132,13 +132,15 @@ def read_trained(folder: Path, key: str) -> DictConfig:
 
 def _check_version(folder: Path, key: str, config: DictConfig) -> None:
     """Raise UsageError if another minor version made the run."""
-    version, commit = str(config.get("version", f"older than {FIRST}")), None
-    if version.split(".")[:2] != __version__.split(".")[:2]:
-        with suppress(UsageError):
-            commit = summary_of(folder / "summary.json").get("git_commit")
+    summary = {}
+    with suppress(UsageError):
+        summary = summary_of(folder / "summary.json")
+    version = config.get("version") or summary.get("versions", {}).get("hybrid_rl")
+    if str(version).split(".")[:2] != __version__.split(".")[:2]:
+        commit = summary.get("git_commit")
         todo = f"check out its commit, {commit}, or train again" if commit else "train again"
-        line = f"made by hybrid_rl {version}, and this is {__version__}; {todo}"
-        raise UsageError(f"{key}={folder}: {line}")
+        made = f"made by hybrid_rl {version or f'older than {FIRST}'}, and this is {__version__}"
+        raise UsageError(f"{key}={folder}: {made}; {todo}")
 
 
 @contextmanager

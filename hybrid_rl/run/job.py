@@ -14,7 +14,7 @@ from hybrid_rl.files.atomic import naming, refuse_link
 from hybrid_rl.networks import precision
 from hybrid_rl.outside.loops import loop_of
 from hybrid_rl.run import folder
-from hybrid_rl.run.checkpoints.store import Shelf, Store
+from hybrid_rl.run.checkpoints.store import Shelf
 from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.folder import SWEEP
 from hybrid_rl.run.logs import loggers
@@ -112,7 +112,7 @@ class Job:
 
     def shelf(self, loop: Loop, output: Output, stack: ExitStack) -> Shelf:
         """The records, open until the end of `stack`, and the checkpoints."""
-        logs, stores, several = [], [], len(self.runs) > 1
+        logs, several = [], len(self.runs) > 1
         for run, run_dir in zip(self.runs, self.folders, strict=True):
             config, more = run.config, {"run_dir": str(run_dir)} if several else {}
             wandb = loggers.to_wandb(config.get("logger"))
@@ -122,10 +122,9 @@ class Job:
                 run_dir, run.seeds, settings, wandb, lambda row, more=more: output(row | more)
             )
             logs.append(stack.enter_context(log))
-            own = Loop(run.agent, run.seeds, loop.stride) if several else loop
-            path = refuse_link(run_dir / "checkpoints")
-            stores.append(Store(path, own, config.checkpoint_replay, written(config)))
-        return Shelf(loop, logs, stores)
+        folders = [refuse_link(run_dir / "checkpoints") for run_dir in self.folders]
+        settings = [written(run.config) for run in self.runs]
+        return Shelf(loop, folders, settings, logs, self.runs[0].config.checkpoint_replay)
 
     def summaries(self, session: Session) -> list[dict[str, Any]]:
         """The contents of summary.json of each run, which are written."""

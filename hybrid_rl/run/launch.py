@@ -27,7 +27,7 @@ from hybrid_rl.run.session import Session
 from hybrid_rl.run.start import Start
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings.build import Run
-from hybrid_rl.settings.values import check, countable, one_of, whole
+from hybrid_rl.settings.values import check, one_of, whole
 
 OF_A_SESSION = ("resume", "total_steps", "run_dir", "version", "logger")
 OF_A_SESSION += ("compile_cache", "precision", "recipe", "config_dir")
@@ -182,7 +182,6 @@ def _settings(config: DictConfig, run_dir: Path, given: Mapping[str, str]) -> Di
             line = f"the run in resume={run_dir} has {old.total_steps}"
             raise UsageError(f"total_steps={steps}: {line}; it can be raised, not lowered")
         old.total_steps = steps
-        countable(old)
     old.resume, old.compile_cache = str(run_dir), config.compile_cache
     if "precision" in given:
         old.precision = one_of("precision", config.precision, precision.PRECISIONS)

@@ -12,9 +12,12 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
+import jax
+import jax.numpy as jnp
 from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl.errors import UsageError
+from hybrid_rl.outside.loops import loop_of
 from hybrid_rl.run import folder, start
 from hybrid_rl.run.logs.records import flatten_keys
 from hybrid_rl.settings import build as configuration
@@ -93,6 +96,15 @@ def axis_of(values: Sequence[Mapping[str, float]], runs: Sequence[Run]) -> Axis:
         same = [tree for tree, own in zip(trees, values, strict=True) if rest <= own.items()]
         if len(same) > 1 and not Axis.of(same).numbers:
             raise _refused(values, key, "it is no number of a learner or a controller")
+    if axis.numbers:
+        loop = loop_of(runs[0].agent, runs[0].seeds * axis.count, 1, axis=axis)
+        one = jax.tree.map(
+            lambda leaf: jax.ShapeDtypeStruct(leaf.shape[1:], leaf.dtype), loop.shapes()
+        )
+        try:
+            jax.eval_shape(loop.step, one, jnp.int32(0))  # nothing is compiled
+        except jax.errors.ConcretizationTypeError as error:
+            raise _refused(values, "") from error
     return axis
 
 

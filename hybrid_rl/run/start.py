@@ -137,7 +137,8 @@ def _begun(config: DictConfig, source: Path) -> tuple[Run, Start]:
         path, seeds = source / "checkpoints", _seeds(then)
         step, state, notes = read_part(path, run.agent, seeds, "learners")
     except MisfitError as error:
-        raise UsageError(f"run={source}: {str(error).partition(': ')[2]}") from error
+        line = f"its parameters do not fit: {str(error).partition(': ')[2]}"
+        raise UsageError(f"run={source}: {line}") from error
     memory, why = _memory(run.agent, config, then, step, source)
     demonstrated, remembered = run.agent.replay.num_demonstrated(run.agent.num_envs), 0
     words = f"memory: {'the demonstrations alone' if demonstrated else 'empty'}, since {why}"

@@ -92,7 +92,7 @@ def test_a_run_of_an_older_version_is_one_line_and_stays(old, tmp_path, capfd, k
     else:
         assert call(lambda: command.run(evaluate.main), f"run={old}") == 2
     assert only_line(capfd) == (
-        f"hybrid_rl: {key}={old}: made by hybrid_rl older than 0.2, and this is {__version__}; "
+        f"hybrid_rl: {key}={old}: made by hybrid_rl 0.1.0, and this is {__version__}; "
         f"check out its commit, {commit}, or train again\n"
     )
     assert contents(tmp_path) == before

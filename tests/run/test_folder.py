@@ -43,7 +43,7 @@ HARM = {  # what of config.yaml becomes what, and the words of the line
     "no physics": (r"(?m)^physics:.*\n", "", "lacks physics"),
     "seeds": ("num_seeds: 2", "num_seeds: 7", "the learners of seed 0, 1, not of seed 0, 1, 2"),
     "seed": ("\nseed: 0\n", "\nseed: 1\n", "the learners of seed 0, 1, not of seed 1, 2"),
-    "value": ("num_envs: 1", "num_envs: 0", "num_envs=0: must be a whole number, 1 or more"),
+    "value": ("num_envs: 1", "num_envs: 0", "num_envs=0: must be a whole number"),
     "network": (r"hidden: \[16\]", "hidden: [8]", "does not fit this run: learners.policy"),
     "module": (r"hybrid_rl\.envs\.analytic\.pendulum", "kettle", "kettle.Pendulum: is no part of"),
 }

@@ -16,7 +16,7 @@ from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import folder, members, start
 from hybrid_rl.run import saved as trained
-from hybrid_rl.run.checkpoints.store import Store
+from hybrid_rl.run.checkpoints.store import Shelf
 from hybrid_rl.settings import build as config
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import Loop
@@ -58,9 +58,9 @@ def begun(source, *overrides):
 def saved(folder):
     """The state in the newest checkpoint of a run."""
     made = config.build(OmegaConf.load(folder / "config.yaml"))
-    store = Store(folder / "checkpoints", Loop(made.agent, made.seeds, 1), True, {})
+    shelf = Shelf(Loop(made.agent, made.seeds, 1), [folder / "checkpoints"], [{}])
     with shared():
-        return store.restore()[0]
+        return shelf.restore()[0]
 
 
 def same(one, two):
@@ -207,11 +207,11 @@ def test_it_goes_on_bit_for_bit_without_the_first_run(source, warm, tmp_path):
 
 
 REFUSED = [  # overrides, words of the line
-    ("policy.hidden=[8]", "learners.policy.policy.params.trunk"),
-    ("env.task=track", " does not fit this run: "),
-    ("algo=sac", " does not fit this run: "),
+    ("policy.hidden=[8]", ": its parameters do not fit: learners.policy.policy.trunk"),
+    ("env.task=track", ": its parameters do not fit: "),
+    ("algo=sac", ": its parameters do not fit: "),
     ("resume={source}", "run, resume: give one of them"),
-    ("freeze=[polcy]", "freeze=[polcy]: the method's learners are model, policy"),
+    ("freeze=[polcy]", "the method's learners are model, policy"),
     ("freeze=policy", "freeze=policy: must be a list"),
     ("pretrain=3", "pretrain=3: what run="),
 ]
