@@ -58,7 +58,7 @@ def test_each_seed_is_a_run_of_wandb_that_a_resumed_run_continues(tmp_path, wand
 @pytest.mark.parametrize(
     ("name", "line"),
     [
-        ("mlflow", "logger=mlflow: choose wandb, or null"),
+        ("mlflow", "logger=mlflow: choose one of null, wandb"),
         ("wandb", 'logger=wandb: not installed; pip install "hybrid_rl[wandb]"'),
     ],
 )

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 from hybrid_rl.errors import UsageError, install
 from hybrid_rl.files.atomic import open_own, own_folder
 from hybrid_rl.run.logs.records import COORDINATES, Row
+from hybrid_rl.settings.values import one_of
 
 
 class Begun(NamedTuple):
@@ -90,12 +91,10 @@ class WandB:
 
 def to_wandb(name: str | None) -> bool:
     """True if the key `logger` of a configuration names W&B, which is installed; null: none."""
-    if name is None:
+    if one_of("logger", name, (None, "wandb")) is None:
         return False
-    if name != "wandb":
-        raise UsageError(f"logger={name}: choose wandb, or null")
     try:
         import_module("wandb")
     except ImportError as error:
-        raise UsageError(f"logger={name}: not installed; {install(name)}") from error
+        raise UsageError(f"logger=wandb: not installed; {install('wandb')}") from error
     return True
