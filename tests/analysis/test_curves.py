@@ -96,17 +96,6 @@ def test_a_shorter_seed_does_not_cut_the_others(tmp_path):
     assert curve.notes == ("hopper, sac: thin where not all seeds have a value, 1 of 2 at 30",)
 
 
-def test_a_short_run_without_a_common_step_is_a_point_of_its_own(tmp_path):
-    """A run of 100 steps, evaluated at its end, and one that was first evaluated at 500."""
-    run(tmp_path / "a", [(100, 7.0)], 0, metric="eval/return")
-    run(tmp_path / "b", [(500, 1.0), (1000, 2.0)], 1, metric="eval/return")
-    (curve,) = curves(tmp_path, "eval/return")
-    assert curve.x.tolist() == [100, 500, 1000]
-    assert curve.iqm.tolist() == [7, 1, 2]
-    assert not curve.shared.any()
-    assert np.isnan(area(curve)).all()
-
-
 def test_a_run_without_the_metric_yet_is_left_out_with_a_note(tmp_path):
     run(tmp_path / "a", [1.0], 0)
     late = run(tmp_path / "b", [0.5], 1, metric="sac/alpha")
@@ -172,26 +161,6 @@ def test_of_a_loss_a_failed_learner_has_no_value(tmp_path):
     np.testing.assert_array_equal(curve.each[1], [3, np.nan, 5])
     assert curve.iqm.tolist() == [2, 2, 4]
     assert "is not finite at 20 and is left out there" in curve.notes[0]
-
-
-@pytest.mark.parametrize(
-    ("file", "content", "line"),
-    [
-        ("metrics.jsonl", b'{"step": 1, "seed": 0, "wall_s": 1}\nnonsense\n', "line 2 is no row"),
-        ("metrics.jsonl", b"[1]\n", "line 1 is no row of metrics"),
-        ("metrics.jsonl", b"\xa0\xff\n", "line 1 is no row of metrics"),
-        ("metrics.jsonl", b"", "metrics.jsonl: no row of metrics yet"),
-        ("summary.json", b"{", "summary.json: is not JSON"),
-    ],
-)
-def test_a_damaged_file_is_named(tmp_path, file, content, line):
-    folder = run(tmp_path / "a", [1.0])
-    if file == "summary.json":
-        (folder / "config.yaml").unlink()
-    (folder / file).write_bytes(content)
-    with pytest.raises(UsageError, match=line) as caught:
-        curves(folder)
-    assert file in str(caught.value)
 
 
 def test_a_seed_that_counts_twice_is_noted(tmp_path):

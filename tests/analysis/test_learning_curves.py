@@ -102,18 +102,6 @@ def test_legends_and_notes_cover_no_axes(tasks, labels):
     assert not any(box.overlaps(other) for box in labels_of_x for other in legends)
 
 
-def test_panels_of_the_same_lines_share_a_legend():
-    """Below all of them, where it covers none."""
-    figure = plot([curve(task, label) for task in ("ant", "hopper") for label in ("bc", "sac")])
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    (legend,) = figure.legends
-    assert [text.get_text() for text in legend.get_texts()] == ["bc (3 seeds)", "sac (3 seeds)"]
-    box = legend.get_window_extent(canvas.get_renderer())
-    assert not any(box.overlaps(panel.get_tightbbox()) for panel in figure.axes)
-    assert figure.bbox.y0 <= box.y0
-
-
 def test_notes_are_on_the_picture():
     """Those that name their line; what ran where is in the JSON. Beyond eight, their number."""
     notes = ("hopper, sac: seed 3 diverged", "one core of a server")

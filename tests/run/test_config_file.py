@@ -8,9 +8,9 @@ import sys
 
 import pytest
 from omegaconf import OmegaConf
-from tiny import TINY, call, call_train, contents, demonstrate, only_line, run, summary_of
+from tiny import call, call_train, contents, demonstrate, only_line, run, summary_of
 
-from hybrid_rl import __version__, evaluate, figures
+from hybrid_rl import __version__, evaluate
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
 from hybrid_rl.run import folder as run_folder
@@ -117,26 +117,6 @@ def test_a_run_of_another_minor_version_is_refused(old):
     assert run_folder.read(old, "run").task == "pendulum"
 
 
-def test_figures_draw_an_old_run_together_with_a_new_one(old, trained, tmp_path):
-    """They are one curve: keys that older versions wrote are no settings."""
-    with (old / "config.yaml").open("a") as file:
-        file.write("planner: {horizon: 5}\ndemonstrations: demonstrations/pendulum.npz\n")
-    before = contents(old)
-    out = tmp_path / "curves.png"
-    for runs, seeds in ((old, 1), (f"{tmp_path}/*", 1)):
-        line = [f"runs={runs}", "metric=eval/return", f"out={out}"]
-        assert call(lambda line=line: command.run(figures.main), *line) == 0
-        (curve,) = json.loads(out.with_suffix(".json").read_text())["curves"]
-        assert (curve["label"], len(curve["seeds"])) == ("sac", seeds)
-    shutil.copytree(trained, tmp_path / "both" / "new")
-    shutil.copytree(old, tmp_path / "both" / "old")
-    line = [f"runs={tmp_path}/both", "metric=eval/return", f"out={out}"]
-    assert call(lambda: command.run(figures.main), *line) == 0
-    (curve,) = json.loads(out.with_suffix(".json").read_text())["curves"]
-    assert (curve["label"], curve["seeds"]) == ("sac", [0, 0])
-    assert contents(old) == before
-
-
 def test_a_setting_is_named_by_its_last_names(trained):
     settings = RunFolder(trained)
     assert settings.word("env") == "Pendulum"
@@ -180,18 +160,3 @@ def test_every_copy_of_the_world_has_the_same_physics(tmp_path):
     assert [world.physics for world in worlds] == ["native"] * 3
     assert worlds[0] == worlds[1] == worlds[2]
     assert composed.env.physics == "auto"
-
-
-def test_two_learners_of_one_field_are_one_line(tmp_path, capfd):
-    """Of a method of the user; the line names both learners and the field of `Params`."""
-    (tmp_path / "algo").mkdir()
-    (tmp_path / "algo" / "twice.yaml").write_text(
-        "# @package _global_\ndefaults: [sac, _self_]\nalgo: twice\n"
-        "learners: {first: '${policy_learner}', policy: '${policy_learner}'}\n"
-    )
-    line = [*TINY, "algo=twice", f"run_dir={tmp_path / 'run'}"]
-    assert call_train("--config-dir", tmp_path, *line) == 2
-    message = only_line(capfd)
-    assert "first" in message
-    assert "policy" in message
-    assert not (tmp_path / "run").exists()
