@@ -7,15 +7,16 @@ have, is written once and referenced by a YAML anchor.
 """
 
 import io
+import json
 import shlex
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Iterator, Mapping, Sequence, Set
+from contextlib import ExitStack, contextmanager, suppress
 from datetime import datetime
 from itertools import chain
 from pathlib import Path
 from typing import Any
 
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig, OmegaConf, open_dict
 from omegaconf.errors import ConfigAttributeError, ConfigKeyError, OmegaConfBaseException
 
 from hybrid_rl.errors import MisfitError, PartError, UsageError, printable
@@ -37,32 +38,56 @@ NO_CHECKPOINT = "holds a run without a checkpoint; delete it, or choose another"
 
 
 @contextmanager
-def claim_folder(config: DictConfig) -> Iterator[Path]:
-    """A new run folder for `config`, locked by this process until the end of the block.
+def claim_folders(
+    configs: Sequence[DictConfig], columns: Mapping[str, Sequence[float]]
+) -> Iterator[list[Path]]:
+    """New run folders for `configs`, locked by this process until the end of the block.
 
-    If the block raises before anything is trained, what it wrote there is deleted again, and the
-    folder too, if it was made here.
+    One is run_dir; several are 0, 1, ... in it, beside sweep.json with `columns`. If nothing was
+    trained in the block, what it wrote is deleted again, and so are folders that it made.
     """
-    folder = new_folder(config) if config.run_dir is None else Path(str(config.run_dir))
-    new = config.run_dir is None or not folder.exists()
-    try:
-        with lock(folder, "run_dir"):
-            saved = checkpoint.steps(folder / "checkpoints")
-            if saved or ((folder / "config.yaml").exists() and not rowless(folder)):
-                line = f"holds a run already; choose another, or resume={folder}"
-                raise UsageError(f"run_dir={folder}: {line if saved else NO_CHECKPOINT}")
-            before = {path.name for path in folder.iterdir()}
-            try:
-                yield folder
-            finally:
-                if not _trained(folder):
-                    for name in {"config.yaml", "metrics.jsonl"} - before:
-                        (folder / name).unlink(missing_ok=True)
-    except BaseException:
-        with suppress(OSError):  # it holds something
-            if new:
-                folder.rmdir()
-        raise
+    given, several = configs[0].run_dir, len(configs) > 1
+    parent = new_folder(configs[0]) if given is None else Path(str(given))
+    folders = [parent / str(number) for number in range(len(configs))] if several else [parent]
+    line = f"run_dir={parent}: holds a run already; choose another, or resume={parent}"
+    with ExitStack() as stack:
+        if given is None or not parent.exists():
+            stack.callback(_remove_empty, parent)
+        if several:
+            if (parent / SWEEP).exists() or (parent / "config.yaml").exists():
+                raise UsageError(line)
+            stack.callback(_forget, parent, folders, _names(parent))
+        for config, folder in zip(configs if several else (), folders, strict=several):
+            stack.callback(_remove_empty, folder)
+            with open_dict(config):
+                config.run_dir = str(folder)
+        for folder in folders:
+            stack.enter_context(lock(folder, "run_dir"))
+            if checkpoint.steps(folder / "checkpoints"):
+                raise UsageError(line)
+            if (folder / "config.yaml").exists() and not rowless(folder):
+                raise UsageError(f"run_dir={folder}: {NO_CHECKPOINT}")
+            stack.callback(_forget, folder, [folder], _names(folder))
+        if several:
+            write_text(parent / SWEEP, json.dumps(columns, indent=1) + "\n")
+        yield folders
+
+
+def _names(folder: Path) -> set[str]:
+    """The names of what a folder holds."""
+    return {path.name for path in folder.iterdir()} if folder.exists() else set()
+
+
+def _forget(folder: Path, runs: Sequence[Path], before: Set[str]) -> None:
+    """Delete what a start has written to a folder that held `before`, unless it trained a run."""
+    if not any(map(_trained, runs)):
+        for name in {"config.yaml", "metrics.jsonl", SWEEP} - before:
+            (folder / name).unlink(missing_ok=True)
+
+
+def _remove_empty(folder: Path) -> None:
+    with suppress(OSError):  # it holds something
+        folder.rmdir()
 
 
 def _trained(folder: Path) -> bool:

@@ -1,27 +1,22 @@
 """A program's runs in their folders: locked, with records and checkpoints, up to summary.json."""
 
-import json
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from omegaconf import DictConfig, OmegaConf, open_dict
+from omegaconf import DictConfig, OmegaConf
 
-from hybrid_rl.errors import FAULTS, UsageError
+from hybrid_rl.errors import FAULTS
 from hybrid_rl.files.atomic import naming, refuse_link
 from hybrid_rl.networks import precision
 from hybrid_rl.outside.loops import loop_of
-from hybrid_rl.run import folder
 from hybrid_rl.run.checkpoints.store import Shelf
-from hybrid_rl.run.files.integrity import write_text
-from hybrid_rl.run.folder import SWEEP
 from hybrid_rl.run.logs import loggers
 from hybrid_rl.run.logs.log import RunLog
 from hybrid_rl.run.logs.records import Row, flatten_keys
 from hybrid_rl.run.machine import provenance
-from hybrid_rl.run.members import Member
 from hybrid_rl.run.session import Session
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings.build import Run
@@ -58,35 +53,6 @@ class Output:
         """Raise what the function raised, if it did; the run has ended with a checkpoint."""
         if self.problem is not None:
             raise self.problem
-
-
-@contextmanager
-def claim_folders(members: Sequence[Member]) -> Iterator[list[Path]]:
-    """New folders, as of `folder.claim_folder`; with several runs numbers, beside sweep.json."""
-    config, several = members[0].config, len(members) > 1
-    made = config.run_dir is None or not Path(str(config.run_dir)).exists()
-    parent = Path(str(config.run_dir or folder.new_folder(config))) if several else Path()
-    if several and ((parent / SWEEP).exists() or (parent / "config.yaml").exists()):
-        line = f"holds a run already; choose another, or resume={parent}"
-        raise UsageError(f"run_dir={parent}: {line}")
-    try:
-        with ExitStack() as stack:
-            folders = []
-            for number, member in enumerate(members):
-                if several:
-                    with open_dict(member.config):
-                        member.config.run_dir = str(parent / str(number))
-                folders.append(stack.enter_context(folder.claim_folder(member.config)))
-            if several:
-                columns = {key: [own.values[key] for own in members] for key in members[0].values}
-                write_text(parent / SWEEP, json.dumps(columns, indent=1) + "\n")
-            yield folders
-    except BaseException:
-        if several and not any((parent / str(number)).exists() for number in range(len(members))):
-            (parent / SWEEP).unlink(missing_ok=True)
-            if made and parent.exists() and not any(parent.iterdir()):
-                parent.rmdir()
-        raise
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from hybrid_rl.run import folder, start
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.files import integrity
 from hybrid_rl.run.files.lock import lock
-from hybrid_rl.run.job import Job, Output, claim_folders, written
+from hybrid_rl.run.job import Job, Output, written
 from hybrid_rl.run.logs import loggers
 from hybrid_rl.run.logs.progress import Progress
 from hybrid_rl.run.logs.records import changes, summary_of
@@ -77,7 +77,8 @@ def _begin(
     axis, first = axis_of([member.values for member in members], runs), start.joined(starts)
     fits(runs)
     loggers.to_wandb(members[0].config.get("logger"))
-    with claim_folders(members) as folders:
+    columns = {key: [member.values[key] for member in members] for key in members[0].values}
+    with folder.claim_folders([member.config for member in members], columns) as folders:
         return _run(Job(runs, folders, axis), handled, output, first)
 
 
@@ -170,12 +171,13 @@ def _settings(config: DictConfig, run_dir: Path, given: Mapping[str, str]) -> Di
     config: what the user's command composes, which may be that of the run again.
     """
     old = folder.read_trained(run_dir, "resume")
-    others = [key.removeprefix("sweep.") for key in given if key not in FREE]
-    if others and not _same(old, config):
-        pairs = {key: [OmegaConf.select(made, key) for made in (old, config)] for key in others}
-        wrong = next((key for key, (then, now) in pairs.items() if then != now), others[0])
-        value = given.get(wrong, pairs[wrong][1])
-        raise UsageError(f"{wrong}={value}: {ONLY}; resume={run_dir} has its own")
+    typed = {key.removeprefix("sweep."): value for key, value in given.items() if key not in FREE}
+    pairs = {key: [OmegaConf.select(made, key) for made in (old, config)] for key in typed}
+    differ = [key for key, (then, now) in pairs.items() if then != now]
+    if not differ and not _same(old, config):
+        differ = [key for key, pair in pairs.items() if pair == [None, None]]  # such as settings
+    if differ:
+        raise UsageError(f"{differ[0]}={typed[differ[0]]}: {ONLY}; resume={run_dir} has its own")
     if "total_steps" in given:
         steps = whole("total_steps", config.total_steps)
         if steps < whole("total_steps", old.total_steps):

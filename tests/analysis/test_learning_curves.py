@@ -122,22 +122,6 @@ def test_a_line_is_thin_where_seeds_are_missing():
     assert thin.get_linewidth() < thick.get_linewidth()
 
 
-def test_many_lines_of_few_points_are_rows_with_their_bands():
-    """Nine curves of two evaluations: a point and a band for each, named on the left."""
-    drawn = [curve(label=f"algo{i}", points=2) for i in range(9)]
-    (axes,) = plot(drawn).axes
-    axes.figure.canvas.draw()
-    assert [text.get_text() for text in axes.get_yticklabels()] == [one.label for one in drawn]
-    assert axes.get_title() == "hopper, 3 seeds"
-    ends = [line.get_xdata() for line in axes.lines if len(line.get_xdata()) == 2]
-    wanted = [(one.low[k], one.high[k]) for one in drawn for k in range(2)]
-    np.testing.assert_array_equal(ends, wanted)
-    assert [text.get_text() for text in axes.get_legend().get_texts()] == [
-        "1,000 decisions",
-        "200,000 decisions",
-    ]
-
-
 def test_the_picture_is_drawn_and_its_numbers_are_float32(tmp_path):
     drawn, out = [curve(seeds=5)], tmp_path / "new" / "a.png"
     save(plot(drawn), numbers_of(drawn), out)

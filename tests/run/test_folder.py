@@ -144,20 +144,23 @@ def test_a_run_that_was_stopped_while_it_compiled_begins_again_in_its_folder(tmp
     folder.mkdir()
     config = load([*TINY, "algo=sac", f"run_dir={folder}"])
     run_folder.write(folder, config)
-    with pytest.raises(UsageError, match="holds a run without"), run_folder.claim_folder(config):
+    with (
+        pytest.raises(UsageError, match="holds a run without"),
+        run_folder.claim_folders([config], {}),
+    ):
         pass  # a file of that name, of whatever
     (folder / "metrics.jsonl").touch()
     with pytest.raises(UsageError, match="no row of metrics yet"):
         examine(folder)
-    with run_folder.claim_folder(config):
+    with run_folder.claim_folders([config], {}):
         pass
 
 
 def test_a_start_beside_a_run_that_has_just_begun_deletes_nothing_of_it(tmp_path):
     config = load([*TINY, "algo=sac", f"run_dir={tmp_path / 'run'}"])
-    with run_folder.claim_folder(config) as folder:
+    with run_folder.claim_folders([config], {}) as (folder,):
         (folder / "metrics.jsonl").touch()
         refused = pytest.raises(UsageError, match="is being written by process")
-        with refused, run_folder.claim_folder(config):
+        with refused, run_folder.claim_folders([config], {}):
             pass
         assert sorted(path.name for path in folder.iterdir()) == ["lock", "metrics.jsonl"]

@@ -195,8 +195,8 @@ class Shelf:
 
     def _gathered(self, folder: Path, meta: Mapping[str, Any]) -> Gathered:
         """The metrics in the newest checkpoint of a folder."""
-        gathered, packed = Gathered(), meta["gathered"]
-        if packed["names"]:
+        gathered, packed = Gathered(), meta.get("gathered", {})
+        if packed.get("names"):
             like = {"gathered": jax.ShapeDtypeStruct(tuple(packed["shape"]), np.float32)}
             array = checkpoint.restore(folder, like, self.newest)[1]["gathered"]
             gathered.unpack(packed["names"], array)
