@@ -20,7 +20,7 @@ from hybrid_rl.errors import MisfitError, UsageError
 from hybrid_rl.files import targets as parts
 from hybrid_rl.run import folder
 from hybrid_rl.run.checkpoints import checkpoint
-from hybrid_rl.run.checkpoints.store import by_learner, concatenated, read_part, with_capacity
+from hybrid_rl.run.checkpoints.store import concatenated, each_learner, read_part, with_capacity
 from hybrid_rl.run.logs.records import flatten_keys
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings import words as overrides
@@ -216,7 +216,7 @@ def _rewritten(agent: Agent, memory: Any, relabelled: bool) -> Any:
             return memory
         return agent.replay.relabelled(memory, agent.spec, agent.episode)
 
-    return by_learner(one, memory)
+    return each_learner(one, memory)
 
 
 def _listed(names: Any) -> str:

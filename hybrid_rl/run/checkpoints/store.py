@@ -67,7 +67,7 @@ def concatenated(states: Sequence[Any]) -> Any:
     return jax.tree.map(lambda *each: jnp.concatenate(each), *states) if others else first
 
 
-def by_learner(change: Callable[[Any], Any], memory: Any) -> Any:
+def each_learner(change: Callable[[Any], Any], memory: Any) -> Any:
     """The results [S, ...] of `change` for the memory of each learner."""
     learners = range(len(memory.count))
     each = [change(jax.tree.map(lambda leaf, s=s: leaf[s], memory)) for s in learners]
@@ -191,7 +191,7 @@ class Shelf:
         agent, now = with_capacity(self.loop.agent, meta["capacity"]), self.loop.agent.replay
         seeds = self.loop.seeds[self.shares()[0]]
         memory = read_part(folder, agent, seeds, "memory", self.newest)[1].memory
-        return memory if meta["capacity"] == now.capacity else by_learner(now.resized, memory)
+        return memory if meta["capacity"] == now.capacity else each_learner(now.resized, memory)
 
     def _gathered(self, folder: Path, meta: Mapping[str, Any]) -> Gathered:
         """The metrics in the newest checkpoint of a folder."""
