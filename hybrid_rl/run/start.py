@@ -107,11 +107,10 @@ class Start:
 def joined(starts: Sequence[Start | None]) -> Start | None:
     """The start of the runs of a sweep, all from the same run; None: from nothing."""
     known = [start for start in starts if start is not None]
-    if len(known) < 2:
-        return known[0] if known else None
-    memory = None
-    if known[0].memory is not None:
-        memory = concatenated([start.memory for start in known])
+    if not known:
+        return None
+    memories = [start.memory for start in known if start.memory is not None]
+    memory = concatenated(memories) if memories else None
     return Start(concatenated([start.learners for start in known]), memory, known[0].line)
 
 
