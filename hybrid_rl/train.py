@@ -28,7 +28,6 @@ from typing import Any
 
 from omegaconf import DictConfig
 
-from hybrid_rl.analysis import learning_curves
 from hybrid_rl.api import OnRow, train
 from hybrid_rl.cli import command, hydra_line, interrupt
 from hybrid_rl.errors import DivergenceError
@@ -46,6 +45,8 @@ def _job(config: DictConfig, typed: Sequence[str], on_row: OnRow | None = None) 
     output.raise_problem()
     run_dir = Path(summary["run_dir"])
     if summary["signal"] is None:
+        from hybrid_rl.analysis import learning_curves  # imports matplotlib
+
         learning_curves.show(run_dir)
     swept = folder.members(run_dir).values()
     for each, values in zip(summary.get("runs", ()), swept, strict=True):

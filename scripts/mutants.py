@@ -90,8 +90,8 @@ MUTANTS = {
     ),
     "a resumed run forgets its record": Mutant(
         "hybrid_rl/run/checkpoints/store.py",
-        'record = Record(**meta["record"])',
-        'record = Record(**{**meta["record"], "wall_s": 0.0, "step": 0})',
+        'Record(**meta["record"])',
+        'Record(**{**meta["record"], "wall_s": 0.0, "step": 0})',
         "tests/run",
     ),
     "a misspelt override is ignored": Mutant(

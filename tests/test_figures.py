@@ -103,13 +103,6 @@ def test_a_study_explains_itself(toy, capsys):
         assert line in printed
 
 
-def test_help_has_the_list_and_the_arguments_of_the_default(toy, capsys):
-    assert draw("--help") == 0
-    printed = capsys.readouterr().out
-    for line in ("  koopman ", "  runs= ", "  metric=train/return ", "study=learning_curves"):
-        assert line in printed
-
-
 @pytest.mark.parametrize("name", figures.studies())
 def test_every_study_has_an_example_of_its_own_command(name, capsys):
     assert draw(f"study={name}", "--help") == 0

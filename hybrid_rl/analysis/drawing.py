@@ -23,19 +23,14 @@ def draw(
     fps: float,
     width: int = 640,
     height: int = 480,
-    panel: Callable[[int], np.ndarray] | None = None,
 ) -> Path:
     """Writes a video, H.264 for .mp4, endless for .gif; for .png the picture halfway.
 
-    scene: MJCF text. qpos: [frames, nq]. fps: [1/s]. width, height: [pixels], even. panel: of the
-    number of a frame, a picture [height, w, 3] (uint8), w even, to the right of it.
+    scene: MJCF text. qpos: [frames, nq]. fps: [1/s]. width, height: [pixels], even.
     """
 
     def pictures(shown: Sequence[int], smooth: bool) -> Iterable[np.ndarray]:
-        plain = frames(scene, qpos[list(shown)], width, height, smooth)
-        if panel is None:
-            return plain
-        return (np.hstack([one, panel(i)]) for i, one in zip(shown, plain, strict=True))
+        return frames(scene, qpos[list(shown)], width, height, smooth)
 
     return write(Path(out), len(qpos), fps, pictures)
 
@@ -79,7 +74,7 @@ def frames(
 
 def _counted(pictures: Iterable[np.ndarray], total: int) -> Iterator[np.ndarray]:
     """The same pictures, with progress on the terminal."""
-    with Progress(total, label="drawing", unit="pictures") as progress:
+    with Progress(total, label="drawing") as progress:
         for number, picture in enumerate(pictures, 1):
             yield picture
             progress.update(number, {})

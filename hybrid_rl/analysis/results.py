@@ -27,7 +27,7 @@ NOT_METRICS = (*COORDINATES, WORD)  # of a row; every other name is a metric
 NOT_SETTINGS = {
     *("task", "algo", "seed", "num_seeds", "run_dir", "resume", "total_steps", "log_every"),
     *("eval_every", "eval_episodes", "eval_modes", "checkpoint_every", "checkpoint_replay"),
-    *("compile_cache", "version", "distributed", "logger", "physics"),
+    *("compile_cache", "version", "logger", "physics"),
 }
 BUILT = (*SECTIONS, *PAID)  # groups from which a run is built; the others are their parts
 IMPLEMENTATION = ".physics"  # ending of the keys that choose one of the same equations

@@ -1,13 +1,25 @@
-"""Studies by name: modules that draw a figure from runs, and the files of their pictures."""
+"""Studies by name: modules that draw a figure from runs, and the files of their pictures.
+
+A study is a module in HOMES, or anywhere on Python's path, with these functions:
+
+    figure(...) -> (Figure, numbers)   a keyword `name: Annotated[type, "help", kind] = default` is
+        an argument of the command; `kind` (hybrid_rl.cli.arguments) parses and checks it
+    summary(numbers) -> [line]         lines to print about the numbers
+    draw(numbers) -> Figure            if it is there: of a JSON, with arrays for its lists
+    table(numbers) -> text             if it is there: of a table, which out=FILE.csv saves
+
+It draws in the style of all pictures, hybrid_rl.analysis.style.STYLE. The first line of its
+docstring is its entry in the list; the rest is its help.
+"""
 
 import ast
 import inspect
 import json
-from collections.abc import Callable
 from contextlib import AbstractContextManager
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, cast
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
 
 from hybrid_rl.analysis.style import STYLE
 from hybrid_rl.cli.arguments import Argument
@@ -22,25 +34,6 @@ if TYPE_CHECKING:
 
 DPI, MOST_PIXELS = 200, 1600  # of a .png; across
 HOMES = ("hybrid_rl.analysis", "hybrid_rl.thesis.studies")  # of studies
-
-
-class Study(Protocol):
-    """A module with these two functions, in HOMES or anywhere on Python's path.
-
-    It draws in the style of all pictures, hybrid_rl.analysis.style.STYLE. The first line of its
-    docstring is its entry in the list; the rest is its help.
-    """
-
-    figure: Callable[..., "tuple[Figure, dict[str, Any]]"]
-    """The picture and its numbers. A keyword `name: Annotated[type, "help", kind] = default` is an
-    argument of the command; `kind` (hybrid_rl.cli.arguments) parses and checks it."""
-    summary: Callable[[dict[str, Any]], list[str]]
-    """Lines to print about the numbers.
-
-    A third function, `table(numbers)`, returns the text of a table, which out=FILE.csv saves.
-    """
-    draw: Callable[[dict[str, Any]], "Figure"]
-    """If it is there: the picture of numbers from a JSON, with arrays for its lists."""
 
 
 def studies() -> dict[str, str]:
@@ -65,12 +58,12 @@ def _sources() -> dict[str, Path]:
     }
 
 
-def study_of(name: str) -> Study:
+def study_of(name: str) -> ModuleType:
     """The study of this name: one that is listed, or a module on Python's path."""
     known = studies()
     if name in known:
         (module,) = (full for full in _sources() if full.rpartition(".")[2] == name)
-        return cast(Study, import_module(module))
+        return import_module(module)
     try:
         study = import_module(name)
     except ModuleNotFoundError as error:
@@ -81,10 +74,10 @@ def study_of(name: str) -> Study:
         raise UsageError(f"study={name}: unknown; {line}") from error
     if not (hasattr(study, "figure") and hasattr(study, "summary")):
         raise UsageError(f"study={name}: {study.__file__} has no functions figure and summary")
-    return cast(Study, study)
+    return study
 
 
-def arguments(study: Study) -> tuple[Argument, ...]:
+def arguments(study: ModuleType) -> tuple[Argument, ...]:
     """The arguments of a study's `figure`; one without a default is required."""
     declared = []
     for name, parameter in inspect.signature(study.figure).parameters.items():
@@ -104,24 +97,11 @@ def styled() -> AbstractContextManager[None]:
 
 
 def save(figure: "Figure", numbers: dict[str, Any], out: Path) -> None:
-    """Write the picture, and its numbers as JSON next to it.
-
-    A JSON file that has these numbers already, such as the one that was redrawn, is left untouched.
-    """
+    """Write the picture, and its numbers as JSON next to it."""
     out.parent.mkdir(parents=True, exist_ok=True)
     undated = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}.get(out.suffix)
     with styled():
         dpi = min(DPI, MOST_PIXELS / figure.get_figwidth())
         with replacing(out) as draft:
             figure.savefig(draft, dpi=dpi, metadata=undated)
-    file, values = out.with_suffix(".json"), json_value(numbers)
-    if not (file.exists() and _content(file) == values):
-        write_text(file, json.dumps(values, indent=1) + "\n")
-
-
-def _content(file: Path) -> Any:
-    """The content of a JSON file; None if it has none."""
-    try:
-        return json.loads(file.read_text(encoding="utf-8"))
-    except (ValueError, RecursionError):
-        return None
+    write_text(out.with_suffix(".json"), json.dumps(json_value(numbers), indent=1) + "\n")

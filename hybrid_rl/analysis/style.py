@@ -69,7 +69,6 @@ WORDS = {  # label or its beginning -> what a reader sees
 }
 STROKES: tuple[Any, ...] = ("-", "--", ":", "-.", (0, (6, 1, 1, 1, 1, 1)), (0, (9, 3)))
 MARKERS = ("o", "s", "^", "D")
-MOST_DASHED = 3  # settings of a method that is alone in a picture
 ENTRY = 0.15  # [in] height of a line of a legend or of a note
 LEGEND_WIDTH, FIGURE_WIDTH = 55, 130  # [characters] under a panel of 4.4 in, a figure of 9 in
 BELOW, BELOW_TICKS = 34, 20  # [pt] from the axes to a legend: below the x label, below the ticks
@@ -106,12 +105,10 @@ def colours(labels: Iterable[str]) -> dict[str, str]:
     """The colour of each label of a picture.
 
     A method has that of METHODS everywhere. Other labels have the colours that are left; one that
-    begins with another label has the same. Many settings of one method alone differ in colour.
+    begins with another label has the same.
     """
     distinct = list(dict.fromkeys(labels))
     family = {each: beginning(each, METHODS) or beginning(each, distinct, min) for each in distinct}
-    if len(set(family.values())) == 1 and len(distinct) > MOST_DASHED:
-        family |= {label: label for label in distinct[1:]}
     taken = {METHODS[name] for name in family.values() if name in METHODS}
     spare = itertools.cycle([colour for colour in COLOURS if colour not in taken] or COLOURS)
     of_family = dict(METHODS)

@@ -28,7 +28,6 @@ from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.folder import members, new_folder
 from hybrid_rl.run.logs.records import result_line
-from hybrid_rl.run.machine import distributed
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.run.start import build_new_run
 from hybrid_rl.settings import build as configuration
@@ -168,8 +167,7 @@ class Sweeper:
     def _check(self, job: Sequence[str], config: DictConfig) -> None:
         """Raise UsageError if a job cannot run, alone or with those that share its program.
 
-        One that runs elsewhere is built with the physics that needs no GPU here; of those of
-        distributed=true, which run here, the processes are counted first.
+        One that runs elsewhere is built with the physics that needs no GPU here.
         """
         local = here(self.config.hydra)
         if not local and config.physics in ACCELERATED:
@@ -178,8 +176,6 @@ class Sweeper:
         for own in (member.config for member in swept if member.config.resume is None):
             check(own)
             prepare(own)  # first: a check of the user's world initialises JAX
-            if local and own.distributed:
-                distributed.share(own)
             runs.append(build_new_run(own)[0])
         if len(runs) > 1:
             program.axis_of([member.values for member in swept], runs)

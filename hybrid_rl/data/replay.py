@@ -126,12 +126,6 @@ class Replay:
         rows = memory.rows.at[..., at].set(jnp.where(filled, reward, kept.reward))
         return memory.replace(rows=rows)
 
-    def recent(self, memory: Memory, spec: Spec, ago: int) -> Transition | None:
-        """The decisions [E] made `ago` rounds before the newest; None if they are not kept."""
-        length, count = memory.rows.shape[0], int(memory.count)
-        kept = ago < min(count, length)
-        return unpack(memory.rows[(count - 1 - ago) % length], spec) if kept else None
-
     def sample(self, memory: Memory, spec: Spec, batch_size: int, key: Array) -> Batch:
         """`batch_size` transitions, uniform among those whose successor is in the memory.
 

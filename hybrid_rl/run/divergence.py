@@ -1,7 +1,4 @@
-"""Learners that reach NaN or infinity: each one ends, and the others of its program continue.
-
-Where the world returned such a number, the message shows its decision, from the replay memory.
-"""
+"""Learners that reach NaN or infinity: each one ends, and the others of its program continue."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -11,7 +8,6 @@ import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.run.checkpoints.store import End, Shelf
-from hybrid_rl.run.logs.rows import of_world
 from hybrid_rl.training.loop import Loop
 
 
@@ -37,10 +33,8 @@ class Diverged:
         """Learners that continue."""
         return len(self.loop.seeds) - len(self.ends)
 
-    def add(
-        self, failures: Mapping[int, tuple[int, str]], state: Any = None, now: int = 0
-    ) -> dict[int, End]:
-        """The new ends; failures: learner -> (step, quantity); state: [S, ...], at step `now`."""
+    def add(self, failures: Mapping[int, tuple[int, str]]) -> dict[int, End]:
+        """The new ends; failures: learner -> (step, quantity)."""
         new, axis, seeds = {}, self.loop.axis, self.loop.seeds
         for s, (step, quantity) in sorted(failures.items()):
             if s in self.ends:
@@ -48,27 +42,8 @@ class Diverged:
             new[s] = {"seed": seeds[s], "step": step, "quantity": quantity}
             if numbers := axis.names[s * axis.count // len(seeds)]:  # where there are others
                 new[s]["of"] = numbers
-            if of_world(quantity):
-                new[s]["world"] = self._decision(s, step, state, now)
         self.ends |= new
         return new
-
-    def _decision(self, s: int, step: int, state: Any, now: int) -> str:
-        """The decision of learner s at `step`, if the memory still holds it, and whose fault."""
-        agent, memory = self.loop.agent, jax.tree.map(lambda leaf: leaf[s], state.memory)
-        made = agent.replay.recent(memory, agent.spec, (now - step) // agent.num_envs)
-        if made is None:
-            return f"a fault of the world {_class_of(agent.episode.env)}"
-        sound = np.isfinite(made.reward) & np.isfinite(made.next_obs).all(-1)
-        e = int(np.argmin(sound))  # the environment
-        obs, action, reward, after = (
-            np.array2string(np.asarray(each[e]), precision=4, threshold=8, separator=", ")
-            for each in (made.obs, made.action, made.reward, made.next_obs)
-        )
-        of_reward = np.isfinite(made.next_obs[e]).all() and agent.episode.reward is not None
-        name = _class_of(agent.episode.reward if of_reward else agent.episode.env)
-        what = f"at obs {obs}, action {action} gives reward {reward}, obs {after}"
-        return " ".join(f"a fault of the world: {name} {what}".split())
 
     def repaired(self, state: Any) -> Any:
         """`state`, whose buffers are reused, with sound values for learners that have ended."""
@@ -77,10 +52,6 @@ class Diverged:
                 self._sound[s] = self.shelf.learner(s)
             state = self.loop.with_learner(state, s, self._sound[s])
         return state
-
-
-def _class_of(part: Any) -> str:
-    return f"{type(part).__module__}.{type(part).__name__}"
 
 
 def unsound(learners: Any, step: int) -> dict[int, tuple[int, str]]:
@@ -120,5 +91,4 @@ def _others(count: int) -> str:
 
 def _words(end: End) -> str:
     who = f"seed {end['seed']}" + (f" of {end['of']}" if "of" in end else "")
-    words = f"{who}, step {end['step']}: {end['quantity']} is not finite"
-    return f"{words}, {end['world']}" if "world" in end else words
+    return f"{who}, step {end['step']}: {end['quantity']} is not finite"

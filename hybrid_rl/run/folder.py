@@ -7,16 +7,16 @@ have, is written once and referenced by a YAML anchor.
 """
 
 import io
+import json
 import shlex
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Iterator, Mapping, Sequence, Set
+from contextlib import ExitStack, contextmanager, suppress
 from datetime import datetime
-from glob import glob
 from itertools import chain
 from pathlib import Path
 from typing import Any
 
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig, OmegaConf, open_dict
 from omegaconf.errors import ConfigAttributeError, ConfigKeyError, OmegaConfBaseException
 
 from hybrid_rl.errors import MisfitError, PartError, UsageError, printable
@@ -26,7 +26,7 @@ from hybrid_rl.run.files.anchors import as_yaml
 from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.files.lock import lock
 from hybrid_rl.run.files.reading import json_file, yaml_file
-from hybrid_rl.run.machine.provenance import git_commit
+from hybrid_rl.run.logs.records import summary_of
 from hybrid_rl.settings.build import CONF
 from hybrid_rl.settings.values import COUNTS, SECTIONS, check_words
 from hybrid_rl.settings.words import quoted
@@ -38,32 +38,56 @@ NO_CHECKPOINT = "holds a run without a checkpoint; delete it, or choose another"
 
 
 @contextmanager
-def claim_folder(config: DictConfig) -> Iterator[Path]:
-    """A new run folder for `config`, locked by this process until the end of the block.
+def claim_folders(
+    configs: Sequence[DictConfig], columns: Mapping[str, Sequence[float]]
+) -> Iterator[list[Path]]:
+    """New run folders for `configs`, locked by this process until the end of the block.
 
-    If the block raises before anything is trained, what it wrote there is deleted again, and the
-    folder too, if it was made here.
+    One is run_dir; several are 0, 1, ... in it, beside sweep.json with `columns`. If nothing was
+    trained in the block, what it wrote is deleted again, and so are folders that it made.
     """
-    folder = new_folder(config) if config.run_dir is None else Path(str(config.run_dir))
-    new = config.run_dir is None or not folder.exists()
-    try:
-        with lock(folder, "run_dir"):
-            saved = checkpoint.steps(folder / "checkpoints")
-            if saved or ((folder / "config.yaml").exists() and not rowless(folder)):
-                line = f"holds a run already; choose another, or resume={folder}"
-                raise UsageError(f"run_dir={folder}: {line if saved else NO_CHECKPOINT}")
-            before = {path.name for path in folder.iterdir()}
-            try:
-                yield folder
-            finally:
-                if not _trained(folder):
-                    for name in {"config.yaml", "metrics.jsonl", "metrics.csv"} - before:
-                        (folder / name).unlink(missing_ok=True)
-    except BaseException:
-        with suppress(OSError):  # it holds something
-            if new:
-                folder.rmdir()
-        raise
+    given, several = configs[0].run_dir, len(configs) > 1
+    parent = new_folder(configs[0]) if given is None else Path(str(given))
+    folders = [parent / str(number) for number in range(len(configs))] if several else [parent]
+    line = f"run_dir={parent}: holds a run already; choose another, or resume={parent}"
+    with ExitStack() as stack:
+        if given is None or not parent.exists():
+            stack.callback(_remove_empty, parent)
+        if several:
+            if (parent / SWEEP).exists() or (parent / "config.yaml").exists():
+                raise UsageError(line)
+            stack.callback(_forget, parent, folders, _names(parent))
+        for config, folder in zip(configs if several else (), folders, strict=several):
+            stack.callback(_remove_empty, folder)
+            with open_dict(config):
+                config.run_dir = str(folder)
+        for folder in folders:
+            stack.enter_context(lock(folder, "run_dir"))
+            if checkpoint.steps(folder / "checkpoints"):
+                raise UsageError(line)
+            if (folder / "config.yaml").exists() and not rowless(folder):
+                raise UsageError(f"run_dir={folder}: {NO_CHECKPOINT}")
+            stack.callback(_forget, folder, [folder], _names(folder))
+        if several:
+            write_text(parent / SWEEP, json.dumps(columns, indent=1) + "\n")
+        yield folders
+
+
+def _names(folder: Path) -> set[str]:
+    """The names of what a folder holds."""
+    return {path.name for path in folder.iterdir()} if folder.exists() else set()
+
+
+def _forget(folder: Path, runs: Sequence[Path], before: Set[str]) -> None:
+    """Delete what a start has written to a folder that held `before`, unless it trained a run."""
+    if not any(map(_trained, runs)):
+        for name in {"config.yaml", "metrics.jsonl", SWEEP} - before:
+            (folder / name).unlink(missing_ok=True)
+
+
+def _remove_empty(folder: Path) -> None:
+    with suppress(OSError):  # it holds something
+        folder.rmdir()
 
 
 def _trained(folder: Path) -> bool:
@@ -133,30 +157,15 @@ def read_trained(folder: Path, key: str) -> DictConfig:
 
 def _check_version(folder: Path, key: str, config: DictConfig) -> None:
     """Raise UsageError if another minor version made the run."""
-    version = config.get("version") or _of_summary(folder, "versions", "hybrid_rl")
-    if _minor(version) != _minor(__version__):
-        commit = _of_summary(folder, "git_commit")
+    summary = {}
+    with suppress(UsageError):
+        summary = summary_of(folder / "summary.json")
+    version = config.get("version") or summary.get("versions", {}).get("hybrid_rl")
+    if str(version).split(".")[:2] != __version__.split(".")[:2]:
+        commit = summary.get("git_commit")
         todo = f"check out its commit, {commit}, or train again" if commit else "train again"
-        raise UsageError(
-            f"{key}={folder}: made by hybrid_rl {version or f'older than {FIRST}'}, and this is "
-            f"{__version__}; {todo}"
-        )
-
-
-def _minor(version: Any) -> list[str]:
-    """The first two numbers of a version."""
-    return str(version).split(".")[:2]
-
-
-def _of_summary(folder: Path, *keys: str) -> str | None:
-    """The value of summary.json at `keys`, one below the other; None if there is none."""
-    try:
-        value: Any = json_file(folder / "summary.json")
-        for key in keys:
-            value = value[key]
-    except (ValueError, KeyError, TypeError):
-        return None
-    return None if value is None else str(value)
+        made = f"made by hybrid_rl {version or f'older than {FIRST}'}, and this is {__version__}"
+        raise UsageError(f"{key}={folder}: {made}; {todo}")
 
 
 @contextmanager
@@ -170,20 +179,7 @@ def blame_config(folder: Path, lacking: bool = False) -> Iterator[None]:
         if isinstance(error, PartError) or (lacking and not absent):  # of a file of the user's own
             raise
         line = f"lacks {error.full_key or error.key}" if absent else str(error).partition("\n")[0]
-        line = f"{path}: {line.removeprefix(f'{path}: ')}{of_another_commit(folder)}"
-        raise UsageError(line) from error
-
-
-def of_another_commit(folder: Path) -> str:
-    """The end of a line about a run that another commit of this version made; else empty."""
-    commit = other_commit(folder)
-    return f"; made at another commit: check out {commit}, or train again" if commit else ""
-
-
-def other_commit(folder: Path) -> str:
-    """The commit that made the run in `folder`; empty if it is this one, or not known."""
-    commit = _of_summary(folder, "git_commit")
-    return "" if commit in (None, git_commit()) else commit
+        raise UsageError(f"{path}: {line.removeprefix(f'{path}: ')}") from error
 
 
 def members(folder: Path) -> dict[Path, dict[str, float]]:
@@ -226,19 +222,15 @@ def parse_config(folder: Path, key: str = "runs") -> DictConfig:
         parts.check({**values, "recipe": str(values.get("recipe"))}, folder)
     except ValueError as error:
         _check_version(folder, key, config)  # another one may have had such a part
-        raise UsageError(f"{path}: {error}{of_another_commit(folder)}") from error
+        raise UsageError(f"{path}: {error}") from error
     defaults: Any = OmegaConf.load(CONF / "train.yaml")
     config.compile_cache = defaults.compile_cache
     return config
 
 
 def _instead(folder: Path, key: str) -> str:
-    """The line about a folder without config.yaml, which may hold other folders of runs."""
+    """The line about a folder without config.yaml, which may hold a sweep."""
     if runs := members(folder):
         listed = ", ".join(f"{run} ({words(values)})" for run, values in runs.items())
         return f"holds a sweep; give one of its runs: {listed}"
-    below = ("", "/*", "/*/*") if folder != Path() else ()  # "": of an empty variable
-    found = [file for tail in below for file in glob(f"{folder}{tail}/config.yaml")]  # a pattern
-    newest = max(found, key=lambda file: Path(file).stat().st_mtime, default="")
-    hint = f"; the newest is {key}={Path(newest).parent}" if newest else ""
-    return f"no run folder there (no config.yaml in it){hint}"
+    return "no run folder there (no config.yaml in it)"

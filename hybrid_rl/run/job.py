@@ -1,27 +1,22 @@
 """A program's runs in their folders: locked, with records and checkpoints, up to summary.json."""
 
-import json
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from omegaconf import DictConfig, OmegaConf, open_dict
+from omegaconf import DictConfig, OmegaConf
 
-from hybrid_rl.errors import FAULTS, UsageError
+from hybrid_rl.errors import FAULTS
 from hybrid_rl.files.atomic import naming, refuse_link
 from hybrid_rl.networks import precision
 from hybrid_rl.outside.loops import loop_of
-from hybrid_rl.run import folder
-from hybrid_rl.run.checkpoints.store import Shelf, Store
-from hybrid_rl.run.files.integrity import write_text
-from hybrid_rl.run.folder import SWEEP
+from hybrid_rl.run.checkpoints.store import Shelf
 from hybrid_rl.run.logs import loggers
 from hybrid_rl.run.logs.log import RunLog
 from hybrid_rl.run.logs.records import Row, flatten_keys
 from hybrid_rl.run.machine import provenance
-from hybrid_rl.run.members import Member
 from hybrid_rl.run.session import Session
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings.build import Run
@@ -60,35 +55,6 @@ class Output:
             raise self.problem
 
 
-@contextmanager
-def claim_folders(members: Sequence[Member]) -> Iterator[list[Path]]:
-    """New folders, as of `folder.claim_folder`; with several runs numbers, beside sweep.json."""
-    config, several = members[0].config, len(members) > 1
-    made = config.run_dir is None or not Path(str(config.run_dir)).exists()
-    parent = Path(str(config.run_dir or folder.new_folder(config))) if several else Path()
-    if several and ((parent / SWEEP).exists() or (parent / "config.yaml").exists()):
-        line = f"holds a run already; choose another, or resume={parent}"
-        raise UsageError(f"run_dir={parent}: {line}")
-    try:
-        with ExitStack() as stack:
-            folders = []
-            for number, member in enumerate(members):
-                if several:
-                    with open_dict(member.config):
-                        member.config.run_dir = str(parent / str(number))
-                folders.append(stack.enter_context(folder.claim_folder(member.config)))
-            if several:
-                columns = {key: [own.values[key] for own in members] for key in members[0].values}
-                write_text(parent / SWEEP, json.dumps(columns, indent=1) + "\n")
-            yield folders
-    except BaseException:
-        if several and not any((parent / str(number)).exists() for number in range(len(members))):
-            (parent / SWEEP).unlink(missing_ok=True)
-            if made and parent.exists() and not any(parent.iterdir()):
-                parent.rmdir()
-        raise
-
-
 @dataclass(frozen=True)
 class Job:
     """K runs, their folders, and the numbers in which they differ."""
@@ -112,20 +78,19 @@ class Job:
 
     def shelf(self, loop: Loop, output: Output, stack: ExitStack) -> Shelf:
         """The records, open until the end of `stack`, and the checkpoints."""
-        logs, stores, several = [], [], len(self.runs) > 1
+        logs, several = [], len(self.runs) > 1
         for run, run_dir in zip(self.runs, self.folders, strict=True):
             config, more = run.config, {"run_dir": str(run_dir)} if several else {}
-            names = loggers.check(config.get("logger"))
+            wandb = loggers.to_wandb(config.get("logger"))
             settings: Any = OmegaConf.to_container(config)
             stack.enter_context(naming(run_dir))
             log = RunLog(
-                run_dir, run.seeds, settings, names, lambda row, more=more: output(row | more)
+                run_dir, run.seeds, settings, wandb, lambda row, more=more: output(row | more)
             )
             logs.append(stack.enter_context(log))
-            own = Loop(run.agent, run.seeds, loop.stride) if several else loop
-            path = refuse_link(run_dir / "checkpoints")
-            stores.append(Store(path, own, config.checkpoint_replay, written(config)))
-        return Shelf(loop, logs, stores)
+        folders = [refuse_link(run_dir / "checkpoints") for run_dir in self.folders]
+        settings = [written(run.config) for run in self.runs]
+        return Shelf(loop, folders, settings, logs, self.runs[0].config.checkpoint_replay)
 
     def summaries(self, session: Session) -> list[dict[str, Any]]:
         """The contents of summary.json of each run, which are written."""

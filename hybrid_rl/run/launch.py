@@ -15,11 +15,11 @@ from hybrid_rl.run import folder, start
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.files import integrity
 from hybrid_rl.run.files.lock import lock
-from hybrid_rl.run.job import Job, Output, claim_folders, written
+from hybrid_rl.run.job import Job, Output, written
 from hybrid_rl.run.logs import loggers
 from hybrid_rl.run.logs.progress import Progress
 from hybrid_rl.run.logs.records import changes, summary_of
-from hybrid_rl.run.machine import distributed, memory
+from hybrid_rl.run.machine import memory
 from hybrid_rl.run.machine.jax_settings import prepare, refuse_x64
 from hybrid_rl.run.members import Member, axis_of, joined
 from hybrid_rl.run.schedule import Schedule
@@ -27,11 +27,11 @@ from hybrid_rl.run.session import Session
 from hybrid_rl.run.start import Start
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings.build import Run
-from hybrid_rl.settings.values import check, countable, one_of, whole
+from hybrid_rl.settings.values import check, one_of, whole
 
-UNKNOWN = object()  # the value of a key that a configuration does not have
-OF_A_SESSION = ("resume", "total_steps", "run_dir", "version", "distributed", "logger")
+OF_A_SESSION = ("resume", "total_steps", "run_dir", "version", "logger")
 OF_A_SESSION += ("compile_cache", "precision", "recipe", "config_dir")
+FREE = ("resume", "total_steps", "compile_cache", "precision")  # keys of a resumed run
 ONLY = "with resume only total_steps and precision can be changed"
 
 Handler = Callable[[Callable[[int], None]], AbstractContextManager]
@@ -48,18 +48,11 @@ def train(
     folder, only total_steps and precision may differ. handled: `handled(f)` is a context in which
     the first signal calls f(number).
     """
-    config = members[0].config
-    if config.get("distributed"):
-        check(config)
-        prepare(config)
-        config = distributed.share(config)
-        members = [Member(config)]
-        given = {key: value for key, value in given.items() if key != "distributed"}
-    if config.resume is not None:
+    if members[0].config.resume is not None:
         return _resume(members, given, handled, output)
     for member in members:
         check(member.config)
-    prepare(config)  # first: a check of the user's world initialises JAX's devices
+    prepare(members[0].config)  # first: a check of the user's world initialises JAX's devices
     made = [start.build_new_run(member.config) for member in members]
     return _begin(members, [run for run, _ in made], handled, output, [first for _, first in made])
 
@@ -83,8 +76,9 @@ def _begin(
     """Run `runs` in new folders."""
     axis, first = axis_of([member.values for member in members], runs), start.joined(starts)
     fits(runs)
-    loggers.check(members[0].config.get("logger"))
-    with claim_folders(members) as folders:
+    loggers.to_wandb(members[0].config.get("logger"))
+    columns = {key: [member.values[key] for member in members] for key in members[0].values}
+    with folder.claim_folders([member.config for member in members], columns) as folders:
         return _run(Job(runs, folders, axis), handled, output, first)
 
 
@@ -95,29 +89,23 @@ def _resume(
     parent = Path(str(wanted[0].config.resume))
     swept = {refuse_link(run_dir): values for run_dir, values in folder.members(parent).items()}
     values = swept or {parent: {}}
-    typed = dict(zip(values, cycle(wanted), strict=False))  # one, or one for each
-
-    def settings(run_dir: Path) -> DictConfig:
-        own = typed[run_dir].config.copy()
-        own.resume = str(run_dir)
-        return _settings(own, given)
-
-    ends = [_done(settings(run_dir), run_dir) for run_dir in values]
-    if done := [end for end in ends if end is not None and None not in ends]:
+    typed = zip(values, cycle(wanted), strict=False)  # one, or one for each
+    configs = {run_dir: _settings(member.config, run_dir, given) for run_dir, member in typed}
+    done = [_done(config, run_dir) for run_dir, config in configs.items()]
+    if ends := [end for end in done if end is not None and None not in done]:
         if output.progress:
-            line = f"already finished ({done[0]['total_steps']:,} steps)"
+            line = f"already finished ({ends[0]['total_steps']:,} steps)"
             print(f"{parent}: {line}; raise total_steps to continue")
-        return joined([*values], done) | {"signal": None}
+        return joined([*values], ends) | {"signal": None}
     with ExitStack() as stack:
         runs = []
-        for run_dir in values:
+        for run_dir, config in configs.items():
             stack.enter_context(lock(run_dir, "resume"))
-            own = settings(run_dir)  # again, as another process may have continued the run
             with folder.blame_config(run_dir):
-                check(own)
-                prepare(own)
-                runs.append(configuration.built(own))
-            refuse_edits(own, run_dir)
+                check(config)
+                prepare(config)
+                runs.append(configuration.built(config))
+            refuse_edits(config, run_dir)  # also those of a process that had it until now
         axis = axis_of([*values.values()], runs)
         return _run(Job(runs, [*values], axis), handled, output)
 
@@ -177,26 +165,26 @@ def _notes(job: Job) -> list[str]:
     return notes
 
 
-def _settings(config: DictConfig, given: Mapping[str, str]) -> DictConfig:
-    """The configuration of the run that `config` resumes, with what the user may change."""
-    run_dir = Path(str(config.resume))
+def _settings(config: DictConfig, run_dir: Path, given: Mapping[str, str]) -> DictConfig:
+    """The configuration of the run in `run_dir`, with what the user may change.
+
+    config: what the user's command composes, which may be that of the run again.
+    """
     old = folder.read_trained(run_dir, "resume")
-    free = {"resume", "total_steps", "compile_cache", "precision"}
-    given = {key.removeprefix("sweep."): value for key, value in given.items()}
-    groups = {key: OmegaConf.select(old, key, default=UNKNOWN) is UNKNOWN for key in given}
-    for key in sorted(given.keys() - free, key=lambda key: groups[key]):  # a changed value is named
-        before, now = (OmegaConf.select(c, key, default=UNKNOWN) for c in (old, config))
-        if not (_same(old, config) if before is UNKNOWN else before == now):
-            has = "" if before is UNKNOWN else f"; the run in resume={run_dir} has {before}"
-            raise UsageError(f"{key}={given[key]}: {ONLY}{has}")
+    typed = {key.removeprefix("sweep."): value for key, value in given.items() if key not in FREE}
+    pairs = {key: [OmegaConf.select(made, key) for made in (old, config)] for key in typed}
+    differ = [key for key, (then, now) in pairs.items() if then != now]
+    if not differ and not _same(old, config):
+        differ = [key for key, pair in pairs.items() if pair == [None, None]]  # such as settings
+    if differ:
+        raise UsageError(f"{differ[0]}={typed[differ[0]]}: {ONLY}; resume={run_dir} has its own")
     if "total_steps" in given:
         steps = whole("total_steps", config.total_steps)
         if steps < whole("total_steps", old.total_steps):
             line = f"the run in resume={run_dir} has {old.total_steps}"
             raise UsageError(f"total_steps={steps}: {line}; it can be raised, not lowered")
         old.total_steps = steps
-        countable(old)
-    old.resume, old.compile_cache = config.resume, config.compile_cache
+    old.resume, old.compile_cache = str(run_dir), config.compile_cache
     if "precision" in given:
         old.precision = one_of("precision", config.precision, precision.PRECISIONS)
     return old
@@ -236,7 +224,7 @@ def _progress(run: Run, visible: bool) -> Progress:
     config = run.config
     rounds = -(-config.total_steps // config.num_envs)
     label, steady = f"{config.task} {config.algo}", max(run.agent.changes())
-    return Progress(rounds * config.num_envs, label, "decisions", steady, visible)
+    return Progress(rounds * config.num_envs, label, steady, visible)
 
 
 def _schedule(config: DictConfig) -> Schedule:

@@ -7,7 +7,6 @@ sweep.json: key -> the value in each of the runs. Its learners are those of all 
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from itertools import product
 from math import isfinite
 from pathlib import Path
@@ -17,7 +16,6 @@ import jax
 import jax.numpy as jnp
 from omegaconf import DictConfig, OmegaConf
 
-from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.errors import UsageError
 from hybrid_rl.outside.loops import loop_of
 from hybrid_rl.run import folder, start
@@ -28,8 +26,6 @@ from hybrid_rl.settings.build import Run
 from hybrid_rl.settings.complete import LACKING, refusal, select, source
 from hybrid_rl.settings.words import raw_values
 from hybrid_rl.training.axis import Axis, DifferError
-from hybrid_rl.training.loop import Loop
-from hybrid_rl.training.rollout import act, advance, begin
 
 
 @dataclass(frozen=True)
@@ -58,8 +54,6 @@ def expand_sweep(config: DictConfig, texts: Sequence[str]) -> list[Member]:
     config.sweep = {}
     for key, values in lists.items():
         _check_values(raw, key, values)
-    if lists and config.get("distributed"):
-        raise UsageError("distributed=true: trains no sweep; use -m, or one process")
     members = []
     for values in product(*lists.values()):
         chosen = dict(zip(lists, values, strict=True))
@@ -102,34 +96,16 @@ def axis_of(values: Sequence[Mapping[str, float]], runs: Sequence[Run]) -> Axis:
         same = [tree for tree, own in zip(trees, values, strict=True) if rest <= own.items()]
         if len(same) > 1 and not Axis.of(same).numbers:
             raise _refused(values, key, "it is no number of a learner or a controller")
-    try:
-        if axis.numbers:
-            _trace(axis, runs[0])
-    except Exception as error:  # whatever a part does with a number that is not known
-        if isinstance(error, UsageError):
-            raise
-        raise _refused(values, "") from error
+    if axis.numbers:
+        loop = loop_of(runs[0].agent, runs[0].seeds * axis.count, 1, axis=axis)
+        one = jax.tree.map(
+            lambda leaf: jax.ShapeDtypeStruct(leaf.shape[1:], leaf.dtype), loop.shapes()
+        )
+        try:
+            jax.eval_shape(loop.step, one, jnp.int32(0))  # nothing is compiled
+        except jax.errors.ConcretizationTypeError as error:
+            raise _refused(values, "") from error
     return axis
-
-
-def _trace(axis: Axis, run: Run) -> None:
-    """Trace what a program computes with the numbers of `axis`; nothing is compiled."""
-    loop = loop_of(run.agent, run.seeds * axis.count, 1, axis=axis)
-    state = loop.shapes()
-    one = jax.tree.map(lambda leaf: jax.ShapeDtypeStruct(leaf.shape[1:], leaf.dtype), state)
-    jax.eval_shape(loop.step, one, jnp.int32(0))
-    for mode, controller in run.controllers.items():
-        jax.eval_shape(partial(_episode, loop, controller, f"controllers.{mode}"), one)
-
-
-def _episode(loop: Loop, controller: Any, path: str, state: Any) -> Any:
-    """A decision of an evaluation."""
-    episode, params = loop.agent.episode, loop.agent.params(state)
-    controller = loop.axis.put(controller, path, state.numbers)
-    carry = begin(episode, controller, state.key[None])
-    if isinstance(episode.env, External):  # JAX does not step it
-        return act(controller, params, carry[1], carry[0], carry[2])
-    return advance(episode, controller, params, carry, jnp.int32(1))
 
 
 def _refused(

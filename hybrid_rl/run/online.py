@@ -31,8 +31,7 @@ from hybrid_rl.outside.acting import Exploring, numbers
 from hybrid_rl.outside.learner import RowLearner, RowLoop
 from hybrid_rl.outside.row_log import row_type
 from hybrid_rl.run import folder as run_folder
-from hybrid_rl.run.checkpoints import checkpoint
-from hybrid_rl.run.checkpoints.store import Record, Store
+from hybrid_rl.run.checkpoints.store import Record, Shelf
 from hybrid_rl.run.files.lock import lock
 from hybrid_rl.run.job import written
 from hybrid_rl.run.launch import fits, refuse_edits
@@ -224,9 +223,8 @@ class OnlineLearner:
         while learner.read < self.decisions:
             self._advance()
         with _writable(folder) as path, self._lock:
-            store = Store(path / "checkpoints", self._loop, True, written(self.config))
-            store.known = set(checkpoint.steps(store.folder))
-            store.save(learner.state, Gathered(), Record([[]], [None], step=learner.read))
+            shelf = Shelf(self._loop, [path / "checkpoints"], [written(self.config)])
+            shelf.save(learner.state, Gathered(), Record([[]], [None], step=learner.read))
             run_folder.write(path, self.config)
 
     @classmethod
@@ -243,8 +241,8 @@ class OnlineLearner:
         refuse_edits(config, Path(folder))
         learner = cls(config, learn=learn)
         learner.close()
-        store = Store(Path(folder) / "checkpoints", learner._loop, True, {})
-        learner._learner.state, _, record, _ = store.restore()
+        shelf = Shelf(learner._loop, [Path(folder) / "checkpoints"], [{}])
+        learner._learner.state, _, record, *_ = shelf.restore()
         learner._start(record.step)
         return learner
 

@@ -84,9 +84,7 @@ def save_policy(
     """
     run = load(folder)
     seed = run.seeds[0] if seed is None else seed
-    if seed not in run.seeds:
-        raise UsageError(f"learner={seed}: the run has {', '.join(map(str, run.seeds))}")
-    params: Any = jax.tree.map(lambda leaf: leaf[run.seeds.index(seed)], run.params)
+    _, params = run.learner(seed, next(iter(run.controllers)), world=True)
     if not jax.tree.leaves(params.policy):
         raise UsageError(f"run={folder}: has no policy with parameters")
     about = _description(folder, run, command, seed)

@@ -23,7 +23,7 @@ from hybrid_rl.run.checkpoints.store import Record, Shelf
 from hybrid_rl.run.divergence import Diverged
 from hybrid_rl.run.evaluations import EVALUATED, Evaluations
 from hybrid_rl.run.logs import rows
-from hybrid_rl.run.logs.progress import DRAWN, Progress
+from hybrid_rl.run.logs.progress import Progress
 from hybrid_rl.run.logs.records import Row
 from hybrid_rl.run.machine import memory, provenance
 from hybrid_rl.run.schedule import Pace, Schedule, Speed
@@ -86,7 +86,7 @@ class Session:
     def resume(self) -> None:
         """Start from the newest sound checkpoint."""
         self.state, self.gathered, self.record, ends, notes = self.shelf.restore()
-        self.progress.step = self.step
+        self.progress.update(self.step, {}, say=False)
         if not self.schedule.checkpoint_replay:
             self.loop.agent = replace(self.loop.agent, first_update=self.step)
             notes += ["no replay memory in checkpoints: it continues, but not bit for bit"]
@@ -211,11 +211,11 @@ class Session:
         for s, outcome in left.items():
             self.record.final_eval[s] = outcome[result]
         means = {n: float(np.mean([each[n] for each in left.values()])) for n in outcomes[0]}
-        self._show({**means, DRAWN: means[result]}, say=True)
+        self._show({**means, "eval/return": means[result]}, say=True)
 
     def _end(self, failures: Mapping[int, tuple[int, str]]) -> list[Row]:
         """A row for each learner that diverged just now; failures: learner -> (step, quantity)."""
-        new = self.diverged.add(failures, self.state, self.step)
+        new = self.diverged.add(failures)
         if left := self.diverged.left:  # else the error names it
             for end in new.values():
                 self.progress.note(divergence.note(end, left))

@@ -20,8 +20,8 @@ from hybrid_rl.errors import MisfitError, UsageError
 from hybrid_rl.files import targets as parts
 from hybrid_rl.run import folder
 from hybrid_rl.run.checkpoints import checkpoint
-from hybrid_rl.run.checkpoints.store import concatenated, read_part, with_capacity
-from hybrid_rl.run.logs.records import changes, flatten_keys
+from hybrid_rl.run.checkpoints.store import concatenated, each_learner, read_part, with_capacity
+from hybrid_rl.run.logs.records import flatten_keys
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings import words as overrides
 from hybrid_rl.settings.build import Run
@@ -31,7 +31,7 @@ from hybrid_rl.training.agent import Agent, AgentState
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import forgotten
 
-OWN = ("random_steps", "pretrain", "run_dir", "freeze", "distributed", "resume", "run")
+OWN = ("random_steps", "pretrain", "run_dir", "freeze", "resume", "run")
 FRESH = ("random_steps=0", "pretrain=0")  # the learners have begun
 FOREIGN = re.compile(r"\$\{[^}]*:|^\+*(hydra|(?!demonstrations=)[\w@]+=[^=]*\.\.)")
 WORLD = ("env", "episode", "constraint", "num_envs")  # keys on which what is remembered depends
@@ -107,11 +107,10 @@ class Start:
 def joined(starts: Sequence[Start | None]) -> Start | None:
     """The start of the runs of a sweep, all from the same run; None: from nothing."""
     known = [start for start in starts if start is not None]
-    if len(known) < 2:
-        return known[0] if known else None
-    memory = None
-    if known[0].memory is not None:
-        memory = concatenated([start.memory for start in known])
+    if not known:
+        return None
+    memories = [start.memory for start in known if start.memory is not None]
+    memory = concatenated(memories) if memories else None
     return Start(concatenated([start.learners for start in known]), memory, known[0].line)
 
 
@@ -133,7 +132,12 @@ def _begun(config: DictConfig, source: Path) -> tuple[Run, Start]:
         raise UsageError(f"pretrain={config.pretrain}: what run={source} has learned is kept")
     numbers = _numbers(config, then, source)
     run = configuration.built(config)
-    step, learners, notes = _learners(run, config, then, source)
+    try:
+        path, seeds = source / "checkpoints", _seeds(then)
+        step, state, notes = read_part(path, run.agent, seeds, "learners")
+    except MisfitError as error:
+        line = f"its parameters do not fit: {str(error).partition(': ')[2]}"
+        raise UsageError(f"run={source}: {line}") from error
     memory, why = _memory(run.agent, config, then, step, source)
     demonstrated, remembered = run.agent.replay.num_demonstrated(run.agent.num_envs), 0
     words = f"memory: {'the demonstrations alone' if demonstrated else 'empty'}, since {why}"
@@ -147,13 +151,12 @@ def _begun(config: DictConfig, source: Path) -> tuple[Run, Start]:
         run = configuration.built(config)  # with room for what it remembers
         memory = _rewritten(run.agent, memory, why == RELABELLED)
     if why:  # they imagined other rewards, or another world
-        learners = forgotten(learners)
-    learners, memory = jax.tree.map(lambda leaf: leaf[numbers], (learners, memory))
+        state = state.replace(learners=forgotten(state.learners))
+    learners, memory = jax.tree.map(lambda leaf: leaf[numbers], (state.learners, memory))
     known = [name for learner in run.agent.learners.values() for name in learner.owns]
     line = f"begins with {_listed(known)} of {source} at step {step:,}; {words}"
-    made = f"; made at another commit, {commit}" if (commit := folder.other_commit(source)) else ""
     frozen = f"; frozen: {_listed(run.agent.frozen)}" if run.agent.frozen else ""
-    return run, Start(learners, memory, "\n".join([*notes, line + frozen + made]))
+    return run, Start(learners, memory, "\n".join([*notes, line + frozen]))
 
 
 def _numbers(config: DictConfig, then: DictConfig, source: Path) -> Any:
@@ -164,25 +167,6 @@ def _numbers(config: DictConfig, then: DictConfig, source: Path) -> Any:
         line = f"has {then.num_seeds} learners; num_seeds={config.num_seeds} must be as many"
         raise UsageError(f"run={source}: {ended or line}")
     return jnp.arange(config.num_seeds) % then.num_seeds
-
-
-def _learners(
-    run: Run, config: DictConfig, then: DictConfig, source: Path
-) -> tuple[int, Any, list[str]]:
-    """(step, learners [S', ...], notes) of the newest sound checkpoint in `source`."""
-    try:
-        path, seeds = source / "checkpoints", _seeds(then)
-        step, state, notes = read_part(path, run.agent, seeds, "learners")
-    except MisfitError as error:
-        lines = changes(_flat(then), _flat(config))
-        lines = [line for line in lines if "." in line.split()[0] and line[:6] != "begun."]
-        own = [line for line in lines if not line.startswith(("env.", "episode.", "reward."))]
-        what, detail = ", ".join((own or lines)[:2]), str(error).partition("this run: ")[2]
-        other = "" if what else folder.of_another_commit(source)
-        raise UsageError(
-            f"{what}: parameters of run={source} do not fit ({detail}){other}"
-        ) from error
-    return step, state.learners, notes
 
 
 def _flat(config: DictConfig, *names: str) -> dict[str, Any]:
@@ -231,9 +215,7 @@ def _rewritten(agent: Agent, memory: Any, relabelled: bool) -> Any:
             return memory
         return agent.replay.relabelled(memory, agent.spec, agent.episode)
 
-    learners = range(len(memory.count))
-    each = [one(jax.tree.map(lambda leaf, s=s: leaf[s], memory)) for s in learners]
-    return jax.tree.map(lambda *leaves: jnp.stack(leaves), *each)
+    return each_learner(one, memory)
 
 
 def _listed(names: Any) -> str:

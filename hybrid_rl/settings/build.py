@@ -48,7 +48,7 @@ from hybrid_rl.training.imagined import Imagination
 READ = (  # the keys that a run reads, and with them all keys that they refer to
     *(*COUNTS, *SECTIONS, *PAID, "expert", "task", "algo", "seed", "random_steps", "pretrain"),
     *("physics", "run_dir", "resume", "eval_modes", "checkpoint_replay", "compile_cache"),
-    *("precision", "distributed", "logger", "run", "freeze"),
+    *("precision", "logger", "run", "freeze"),
 )
 register(CONF)  # before Hydra composes anything
 COMPOSING = Lock()  # Hydra composes in one thread at a time

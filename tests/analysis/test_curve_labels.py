@@ -42,21 +42,6 @@ def test_only_parts_that_are_built_are_compared(tmp_path):
     ]
 
 
-def test_another_reward_is_another_curve(tmp_path):
-    """Of runs that were built, too, where only what they were built from counts."""
-    rewards = ["null", "{_target_: a.Aim, target: 1}", "{_target_: a.Aim, target: 2}"]
-    for seed, reward in enumerate(rewards):
-        built = {"controllers": "{full: {_target_: a.Planner}}", "unread": f"{{u: {seed}}}"}
-        run(tmp_path / str(seed), [1.0], seed, reward=reward, **built)
-    assert len(curves(tmp_path)) == 3
-
-
-def test_another_class_is_one_difference(tmp_path):
-    for seed, part in enumerate(["{_target_: a.b.Gaussian}", "{_target_: a.Ensemble, members: 5}"]):
-        run(tmp_path / str(seed), [1.0], seed, model=part)
-    assert [c.label for c in curves(tmp_path)] == ["sac model=Ensemble", "sac model=Gaussian"]
-
-
 def test_groups_are_tasks_and_algorithms_or_any_key(tmp_path):
     run(tmp_path / "a", [1.0], algo="sac", num_envs=4, replay="{capacity: 5}")
     run(tmp_path / "b", [2.0], algo="nn_mppi", num_envs=4, replay="{capacity: 6}")

@@ -72,11 +72,6 @@ def test_methods_are_compared_as_far_as_both_ran(tmp_path):
     assert any(line in each for each in summary(numbers))
 
 
-def test_several_values_at_one_step_are_one_point(tmp_path):
-    (curve,) = curves(run(tmp_path / "a", [(10, 1.0), (10, 3.0), (20, 5.0)]))
-    assert (curve.x.tolist(), curve.iqm.tolist()) == ([10, 20], [2, 5])
-
-
 def test_seeds_without_common_steps_meet_on_a_straight_line(tmp_path):
     """Both seeds lie on y = x, so the curve must."""
     rng = np.random.default_rng(0)
@@ -99,17 +94,6 @@ def test_a_shorter_seed_does_not_cut_the_others(tmp_path):
     np.testing.assert_allclose(curve.iqm, [1.5, 1.5, 1, 1, 1])
     assert area(curve).tolist() == [1, 2]
     assert curve.notes == ("hopper, sac: thin where not all seeds have a value, 1 of 2 at 30",)
-
-
-def test_a_short_run_without_a_common_step_is_a_point_of_its_own(tmp_path):
-    """A run of 100 steps, evaluated at its end, and one that was first evaluated at 500."""
-    run(tmp_path / "a", [(100, 7.0)], 0, metric="eval/return")
-    run(tmp_path / "b", [(500, 1.0), (1000, 2.0)], 1, metric="eval/return")
-    (curve,) = curves(tmp_path, "eval/return")
-    assert curve.x.tolist() == [100, 500, 1000]
-    assert curve.iqm.tolist() == [7, 1, 2]
-    assert not curve.shared.any()
-    assert np.isnan(area(curve)).all()
 
 
 def test_a_run_without_the_metric_yet_is_left_out_with_a_note(tmp_path):
@@ -137,13 +121,6 @@ def test_a_start_that_failed_is_no_run(tmp_path):
     folder = run(tmp_path / "a", [1.0])
     (curve,) = curves(f"{tmp_path}/*")
     assert (curve.runs, curve.notes) == ((str(folder),), ())
-
-
-def test_a_task_without_the_metric_is_left_out_with_a_note(tmp_path):
-    run(tmp_path / "a", [1.0], metric="planner/lyapunov")
-    run(tmp_path / "b", [1.0], metric="belief/best", task="no_dynamics", algo="bayesopt")
-    (curve,) = curves(tmp_path, "planner/lyapunov")
-    assert (curve.task, curve.notes) == ("hopper", ("no_dynamics, bayesopt: no planner/lyapunov",))
 
 
 def test_failed_evaluations_count_and_cut_nothing(tmp_path):
@@ -184,26 +161,6 @@ def test_of_a_loss_a_failed_learner_has_no_value(tmp_path):
     np.testing.assert_array_equal(curve.each[1], [3, np.nan, 5])
     assert curve.iqm.tolist() == [2, 2, 4]
     assert "is not finite at 20 and is left out there" in curve.notes[0]
-
-
-@pytest.mark.parametrize(
-    ("file", "content", "line"),
-    [
-        ("metrics.jsonl", b'{"step": 1, "seed": 0, "wall_s": 1}\nnonsense\n', "line 2 is no row"),
-        ("metrics.jsonl", b"[1]\n", "line 1 is no row of metrics"),
-        ("metrics.jsonl", b"\xa0\xff\n", "line 1 is no row of metrics"),
-        ("metrics.jsonl", b"", "metrics.jsonl: no row of metrics yet"),
-        ("summary.json", b"{", "summary.json: is not JSON"),
-    ],
-)
-def test_a_damaged_file_is_named(tmp_path, file, content, line):
-    folder = run(tmp_path / "a", [1.0])
-    if file == "summary.json":
-        (folder / "config.yaml").unlink()
-    (folder / file).write_bytes(content)
-    with pytest.raises(UsageError, match=line) as caught:
-        curves(folder)
-    assert file in str(caught.value)
 
 
 def test_a_seed_that_counts_twice_is_noted(tmp_path):
@@ -247,14 +204,6 @@ def test_a_run_in_progress_is_read_up_to_its_last_complete_row(tmp_path):
     (curve,) = curves(folder)
     assert (curve.x.tolist(), curve.iqm.tolist()) == ([10, 20], [1, 3])
     assert curve.notes == (f"hopper, sac: the last row of {folder} is incomplete; left out",)
-
-
-def test_what_does_not_exist_is_named_with_what_does(tmp_path):
-    run(tmp_path / "a", [1.0], metric="eval/return")
-    with pytest.raises(UsageError, match=r"metric=train/return: .* they have eval/return"):
-        curves(tmp_path)
-    with pytest.raises(UsageError, match=r"runs=.*nowhere.*: no run there"):
-        curves(tmp_path / "nowhere*")
 
 
 def test_runs_are_found_by_glob_by_folder_and_by_list(tmp_path):

@@ -6,8 +6,6 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 import pytest
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 
 from hybrid_rl.analysis.results import redrawn
 from hybrid_rl.analysis.style import (
@@ -17,7 +15,6 @@ from hybrid_rl.analysis.style import (
     STYLE,
     VERMILION,
     colours,
-    legend_below,
     line_styles,
     words,
 )
@@ -81,13 +78,6 @@ def test_a_method_has_one_colour_in_every_picture():
     assert styles["hybrid_stochastic tau=1"]["linestyle"] == "--"
 
 
-def test_many_settings_of_one_method_alone_have_colours_of_their_own():
-    sweep = [f"sac tau={tau}" for tau in (1, 2, 3, 4, 5)]
-    assert len(set(colours(sweep).values())) == 5
-    assert colours(sweep)[sweep[0]] == METHODS["sac"]
-    assert len(set(colours(sweep[:2]).values())) == 1
-
-
 @pytest.mark.parametrize(
     ("label", "shown"),
     [
@@ -124,17 +114,3 @@ def test_a_picture_is_drawn_again_from_its_json(study, name):
             for x in named
         ]
         assert len(set(shown)) == len(shown)
-
-
-def test_a_long_label_of_a_legend_is_wrapped_and_stays_in_the_picture():
-    figure = Figure(figsize=(4.4, 3.2), layout="constrained")
-    FigureCanvasAgg(figure)
-    axes = figure.subplots()
-    axes.plot([0, 1], label="no gradient through the models, and a critic that learns from one")
-    axes.plot([1, 0], label="short")
-    legend_below(axes)
-    figure.canvas.draw()
-    long, short = axes.get_legend().get_texts()
-    assert long.get_text().count("\n") == 1
-    assert short.get_text() == "short"
-    assert axes.get_legend().get_window_extent().x1 <= figure.bbox.x1

@@ -10,11 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 from foreign import no_plain_file
-from tiny import call
 
-from hybrid_rl import evaluate
 from hybrid_rl.beliefs.maps import learned
-from hybrid_rl.cli import command
 from hybrid_rl.data import archive, demonstrations
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import saved as trained
@@ -87,13 +84,6 @@ def test_an_array_whose_header_lies_is_refused(tmp_path, policy, name):
             data.writestr(f"{key}.npy", MEMBERS[name])
         with pytest.raises(ValueError, match=r"is damaged, cut short|must hold numbers|lacks"):
             archive.read("policy:", file, ["obs"] if key == "obs" else ())
-
-
-def test_an_array_in_the_order_of_fortran_is_the_same_array(tmp_path, policy):
-    turned = policy | {WEIGHTS: np.asfortranarray(policy[WEIGHTS])}
-    np.savez(tmp_path / "a.npz", **turned)
-    got = archive.read("policy:", tmp_path / "a.npz")
-    np.testing.assert_array_equal(got[WEIGHTS], policy[WEIGHTS])
 
 
 def test_a_small_file_does_not_become_large(tmp_path, policy):
@@ -197,13 +187,6 @@ def test_a_task_is_a_plain_name(tmp_path, policy, task):
     with pytest.raises(ValueError, match="a file needs a name of letters"):
         archive.write(tmp_path / "b.npz", task, Spec(3, 1, 0.05), {})
     assert not (tmp_path / "b.npz").exists()
-
-
-def test_words_of_a_file_are_printed_on_one_line(tmp_path, policy, capfd):
-    np.savez(tmp_path / "a.npz", **described(policy, command="x\nhybrid_rl: \x1b]0;t\x07 y"))
-    given = [f"policy={tmp_path / 'a.npz'}", "episodes=1"]
-    assert call(lambda: command.run(evaluate.main), *given) == 0
-    assert "trained by: x\\nhybrid_rl: \\x1b]0;t\\x07 y\n" in capfd.readouterr().out
 
 
 def mutated(whole: bytes) -> list[bytes]:

@@ -65,17 +65,6 @@ def test_another_goal_pays_for_what_is_kept_by_actions_as_the_world_clips_them()
     np.testing.assert_array_equal(jnp.delete(rows, 3, -1), jnp.delete(memory.rows, 3, -1))
 
 
-@pytest.mark.parametrize("times", [3, 9])
-def test_decisions_are_recent_as_far_back_as_the_memory_reaches(times: int) -> None:
-    """The newest was made 0 rounds ago; there is none before the oldest that is kept."""
-    replay, memory = filled(5, 1, times)
-    held = min(times, 5)
-    found = [replay.recent(memory, SPEC, ago) for ago in range(7)]
-    assert [each is not None for each in found] == [ago < held for ago in range(7)]
-    rewards = [float(each.reward[0]) for each in found if each is not None]
-    assert rewards == [-100.0 * (times - 1 - ago) for ago in range(held)]
-
-
 def test_a_memory_that_goes_on_begins_another_episode() -> None:
     """Of three worlds' newest decisions one is terminal, the others are cut."""
     no, ends = jnp.zeros(3, bool), jnp.array([False, True, False])

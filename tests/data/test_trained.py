@@ -108,13 +108,6 @@ def test_a_file_for_another_use_is_refused(file: Path, fields: dict, words: str)
         opened(file, **fields)
 
 
-def test_parameters_that_are_not_finite_are_not_written(tmp_path: Path) -> None:
-    """The message names the array."""
-    bad = jax.tree.map(lambda leaf: leaf * jnp.nan, PARAMS)
-    with pytest.raises(ValueError, match="is not finite"):
-        save(tmp_path / "policy.npz", "pendulum", Pendulum().spec, bad)
-
-
 def test_the_policy_of_a_run_becomes_the_expert_of_its_task(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

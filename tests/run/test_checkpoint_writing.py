@@ -6,10 +6,8 @@ import shutil
 import signal
 import subprocess
 import sys
-from threading import Thread
 
 import jax.numpy as jnp
-import numpy as np
 import pytest
 from states import assert_same, state_at
 
@@ -31,7 +29,7 @@ checkpoint.save(folder, 2, {"x": jnp.zeros(3)}, {})
 def test_a_kill_before_the_rename_leaves_the_one_before(tmp_path):
     done = subprocess.run([sys.executable, "-c", KILLED, str(tmp_path)], check=False)
     assert done.returncode == -signal.SIGKILL
-    assert (tmp_path / ".2.tmp").is_dir()
+    assert any(tmp_path.glob(".2.*.tmp"))
     step, result, _, notes = checkpoint.restore(tmp_path, {"x": jnp.zeros(3)})
     assert (step, result["x"].tolist(), notes) == (1, [1, 1, 1], [])
     checkpoint.save(tmp_path, 3, {"x": jnp.zeros(3)}, {})
@@ -50,7 +48,7 @@ rename = Path.rename
 
 def killed(path, target):
     rename(path, target)
-    if target.name == ".1.replaced.tmp":
+    if target.name.startswith(".1.replaced."):
         os.kill(os.getpid(), signal.SIGKILL)
 Path.rename = killed
 checkpoint.save(folder, 1, {"x": jnp.zeros(3)}, {})
@@ -68,16 +66,6 @@ def test_a_kill_between_the_renames_leaves_the_replaced_one(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["1", "2"]
 
 
-def test_what_another_process_wrote_stays(three):
-    """A session deletes what it saw at its start and what it wrote, also beyond its step."""
-    checkpoint.save(three, 60, state_at(60), {}, known={20, 30})
-    assert checkpoint.steps(three) == [30, 60]
-    checkpoint.save(three, 25, state_at(25), {}, known={30, 20})
-    assert checkpoint.steps(three) == [25, 60]
-    checkpoint.save(three, 40, state_at(40), {}, keep=1, known={25})
-    assert checkpoint.steps(three) == [40, 60]
-
-
 def test_a_folder_is_read_while_its_checkpoints_are_deleted(three, monkeypatch):
     """Each time that one was read in part, its writer deletes it; a newer one is there."""
     read, behind = leaves.read, [30, 40, 50]
@@ -91,28 +79,6 @@ def test_a_folder_is_read_while_its_checkpoints_are_deleted(three, monkeypatch):
     monkeypatch.setattr(leaves, "read", overtaken)
     step, _, _, notes = checkpoint.restore(three, state_at(0))
     assert (step, notes) == (60, [])
-
-
-def test_a_folder_is_read_while_a_thread_saves_and_deletes(tmp_path):
-    """Every state that is read is one that was saved, whole."""
-    states = {step: {"x": jnp.full(1000, step)} for step in range(1, 16)}
-    checkpoint.save(tmp_path, 1, states[1], {"step": 1}, keep=1)
-
-    def go_on():
-        for step in range(2, 16):
-            checkpoint.save(tmp_path, step, states[step], {"step": step}, keep=1)
-
-    writer = Thread(target=go_on)
-    writer.start()
-    seen = []
-    while writer.is_alive() or not seen:
-        step, result, meta, notes = checkpoint.restore(tmp_path, states[1])
-        assert (meta["step"], notes) == (step, [])
-        assert np.all(result["x"] == step)
-        seen.append(step)
-    writer.join()
-    assert seen == sorted(seen)
-    assert checkpoint.steps(tmp_path) == [15]
 
 
 def assert_untouched(folder):
@@ -168,32 +134,24 @@ def test_an_interrupt_leaves_no_draft(three, monkeypatch):
     assert_untouched(three)
 
 
-def test_it_says_nothing_on_the_terminal(tmp_path):
-    code = KILLED.replace("checkpoint._rename = ", "_ = ") + (
-        "checkpoint.restore(folder, {'x': jnp.zeros(3)})\n"
-    )
-    command = [sys.executable, "-c", code, str(tmp_path)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
-
-
 def test_what_cannot_be_deleted_is_passed_over(three, monkeypatch):
     """A mount, say, or what another process holds open on a network disk."""
-    stuck = {".40.tmp", ".20.pruned.tmp"}
     (three / ".40.tmp").mkdir()
-    rmtree = shutil.rmtree
+    rmtree, stuck = shutil.rmtree, []
 
     def refuses(path, ignore_errors=False):
-        if path.name not in stuck:
+        if not path.name.startswith((".40.tmp", ".20.pruned")):
             rmtree(path)
-        elif not ignore_errors:
+        elif ignore_errors:
+            stuck.append(path.name)
+        else:
             raise OSError(errno.EBUSY, "Device or resource busy")
 
     monkeypatch.setattr(shutil, "rmtree", refuses)
     for step in (40, 50, 60):
         checkpoint.save(three, step, state_at(step), {})
         assert_same(checkpoint.restore(three, state_at(0))[1], state_at(step))
-    assert sorted(path.name for path in three.iterdir()) == [*sorted(stuck), "50", "60"]
+    assert sorted(path.name for path in three.iterdir()) == [*sorted({*stuck}), "50", "60"]
 
 
 def test_a_plain_file_with_the_name_of_a_checkpoint_is_none(three):
@@ -203,8 +161,7 @@ def test_a_plain_file_with_the_name_of_a_checkpoint_is_none(three):
     for step in (40, 50, 60):
         checkpoint.save(three, step, state_at(step), {})
     assert checkpoint.steps(three) == [50, 60]
-    kept = [path.read_text() for path in checkpoint.leftovers(three)]
-    assert kept == ["mine", "mine"]
+    assert [path.read_text() for path in three.glob(".*.tmp")] == ["mine", "mine"]
 
 
 def test_a_folder_that_is_moved_meanwhile_is_not_made_again(tmp_path, monkeypatch):

@@ -37,14 +37,3 @@ def test_limits_that_lie_close_together_have_more_digits():
 
 def test_a_constant_is_a_line_at_the_bottom():
     assert (columns(curve.drawn([1, 2], [5.0, 5.0], "", "")) == 0).all()
-
-
-def test_a_small_curve_has_a_block_for_each_of_the_latest_values():
-    values = [*range(100), float("nan"), float("inf")]
-    shown = curve.small(values)
-    assert len(shown) == curve.LATEST
-    eighths = [ord(block) - 0x2580 for block in shown]
-    want = 1 + np.rint(7 * np.linspace(0, 1, curve.LATEST))
-    np.testing.assert_array_equal(eighths, want)
-    assert curve.small([2.0, 2.0]) == 2 * "\u2581"
-    assert curve.small([]) == ""

@@ -1,17 +1,11 @@
 """The config.yaml of a run folder is read back or blamed in one line; a start undoes itself."""
 
-import errno
-import json
-import os
 import re
-import shutil
-from pathlib import Path
 
-import numpy as np
 import pytest
 from tiny import TINY, call, call_train, contents, only_line, run
 
-from hybrid_rl import evaluate, render
+from hybrid_rl import evaluate
 from hybrid_rl.cli import command
 from hybrid_rl.errors import UsageError, WorldError
 from hybrid_rl.run import folder as run_folder
@@ -19,12 +13,9 @@ from hybrid_rl.run.files import integrity
 from hybrid_rl.run.files.lock import lock
 from hybrid_rl.settings.build import load
 from hybrid_rl.tools.doctor.__main__ import examine
-from hybrid_rl.tools.report import __main__ as report
 from hybrid_rl.training.loop import Loop
 
 pytestmark = pytest.mark.turns(3)
-
-READERS = {"evaluate": evaluate.main, "render": render.main}
 
 
 @pytest.fixture(scope="module")
@@ -52,7 +43,7 @@ HARM = {  # what of config.yaml becomes what, and the words of the line
     "no physics": (r"(?m)^physics:.*\n", "", "lacks physics"),
     "seeds": ("num_seeds: 2", "num_seeds: 7", "the learners of seed 0, 1, not of seed 0, 1, 2"),
     "seed": ("\nseed: 0\n", "\nseed: 1\n", "the learners of seed 0, 1, not of seed 1, 2"),
-    "value": ("num_envs: 1", "num_envs: 0", "num_envs=0: must be a whole number, 1 or more"),
+    "value": ("num_envs: 1", "num_envs: 0", "num_envs=0: must be a whole number"),
     "network": (r"hidden: \[16\]", "hidden: [8]", "does not fit this run: learners.policy"),
     "module": (r"hybrid_rl\.envs\.analytic\.pendulum", "kettle", "kettle.Pendulum: is no part of"),
 }
@@ -75,47 +66,15 @@ def harm(folder, kind):
 def test_a_damaged_configuration_is_blamed_on_its_file(copied, capfd, kind):
     words = harm(copied, kind)
     before = contents(copied)
-    lines = []
-    for name, main in READERS.items():
-        assert call(lambda main=main: command.run(main), f"run={copied}") == 2, name
-        lines.append(only_line(capfd))
-        assert words in lines[-1]
+    assert call(lambda: command.run(evaluate.main), f"run={copied}") == 2
+    lines = [only_line(capfd)]
+    assert words in lines[0]
     assert call_train(f"resume={copied}", "total_steps=200") == 2
     lines.append(only_line(capfd))
     assert OF_RESUME.get(kind, words) in lines[-1]
     for line in lines:
         assert line.startswith(f"hybrid_rl: {copied}/config.yaml"), line
     assert contents(copied) == before
-
-
-def test_an_empty_configuration_has_no_report(copied, capfd):
-    harm(copied, "empty")
-    assert call(lambda: command.run(report.main), f"run={copied}", "video=none") == 2
-    assert "config.yaml: is empty" in only_line(capfd)
-
-
-@pytest.mark.parametrize("kind", ["no env", "no physics", "value", "module"])
-def test_what_another_commit_wrote_says_which(copied, capfd, kind):
-    words, summary = harm(copied, kind), json.loads((copied / "summary.json").read_text())
-    (copied / "summary.json").write_text(json.dumps(summary | {"git_commit": "1a2b3c"}))
-    assert call(lambda: command.run(evaluate.main), f"run={copied}") == 2
-    line = only_line(capfd)
-    assert words in line
-    assert line.endswith("; made at another commit: check out 1a2b3c, or train again\n")
-
-
-@pytest.mark.parametrize("given", ["runs/pendulum/sac", "runs/pendulum", "runs/*/sac/*"])
-def test_a_folder_of_runs_names_the_newest(tmp_path, monkeypatch, given):
-    monkeypatch.chdir(tmp_path)
-    for age, name in ((9, "b"), (1, "a"), (5, "c")):
-        file = tmp_path / "runs/pendulum/sac" / name / "config.yaml"
-        file.parent.mkdir(parents=True)
-        file.touch()
-        os.utime(file, (1e9 - age, 1e9 - age))
-    with pytest.raises(UsageError, match=r"; the newest is run=runs/pendulum/sac/a$"):
-        run_folder.read(Path(given), "run")
-    with pytest.raises(UsageError, match=r"run=: no run folder there \(no config.yaml in it\)$"):
-        run_folder.read(Path(), "run")
 
 
 def test_a_run_goes_on_only_with_the_settings_that_it_began_with(copied, capfd):
@@ -139,30 +98,6 @@ def test_a_run_goes_on_only_with_the_settings_that_it_began_with(copied, capfd):
     assert "total_steps was 100 and is 60; put it back" in only_line(capfd)
     path.write_text(text.replace("compile_cache: null", "compile_cache: elsewhere"))
     assert call_train(f"resume={copied}", "total_steps=150") == 0  # of this machine, not the run
-
-
-def test_an_evaluation_of_a_run_that_cannot_be_written_to_is_shown(copied, monkeypatch, capfd):
-    def read_only(path, text):
-        raise OSError(errno.EROFS, "Read-only file system", str(path))
-
-    monkeypatch.setattr(evaluate, "write_text", read_only)
-    assert call(lambda: command.run(evaluate.main), f"run={copied}", "episodes=1") == 0
-    printed = capfd.readouterr().out
-    assert "mean return" in printed
-    assert f"not written: {copied}/evaluation_full.json: Read-only file system" in printed
-
-
-def test_an_evaluation_in_a_pipe_keeps_its_paths_whole(trained, tmp_path, capfd):
-    """And ends with a row for the episodes of all seeds."""
-    folder = shutil.copytree(trained, tmp_path / ("long" * 20) / "run")
-    assert call(lambda: command.run(evaluate.main), f"run={folder}", "episodes=2") == 0
-    lines = capfd.readouterr().out.splitlines()
-    assert f"{folder}, mode full, step 100" in lines
-    assert f"2 episodes a seed; written to {folder}/evaluation_full.json" in lines
-    returns = np.array(json.loads((folder / "evaluation_full.json").read_text())["returns"])
-    (row,) = [line.split("\u2502")[1:-1] for line in lines if " all " in line]
-    wanted = (returns.mean(), returns.std(), returns.min(), returns.max())
-    assert [cell.strip() for cell in row] == ["all", *(f"{value:,.1f}" for value in wanted)]
 
 
 def test_a_broken_world_is_not_blamed_on_the_file(tmp_path):
@@ -199,7 +134,7 @@ def test_a_start_that_fails_leaves_the_disk_as_it_was(tmp_path, monkeypatch, cap
             (folder / "x").unlink()
     before = contents(tmp_path)
     monkeypatch.setattr(Loop, "memory", lambda *_: 1e15)
-    assert call_train(*TINY, "algo=sac", "logger=csv", f"run_dir={folder}") == 1
+    assert call_train(*TINY, "algo=sac", f"run_dir={folder}") == 1
     assert "num_seeds=1: the program would take 1,000,000.0 GB" in only_line(capfd)
     assert contents(tmp_path) == before
 
@@ -209,20 +144,23 @@ def test_a_run_that_was_stopped_while_it_compiled_begins_again_in_its_folder(tmp
     folder.mkdir()
     config = load([*TINY, "algo=sac", f"run_dir={folder}"])
     run_folder.write(folder, config)
-    with pytest.raises(UsageError, match="holds a run without"), run_folder.claim_folder(config):
+    with (
+        pytest.raises(UsageError, match="holds a run without"),
+        run_folder.claim_folders([config], {}),
+    ):
         pass  # a file of that name, of whatever
     (folder / "metrics.jsonl").touch()
     with pytest.raises(UsageError, match="no row of metrics yet"):
         examine(folder)
-    with run_folder.claim_folder(config):
+    with run_folder.claim_folders([config], {}):
         pass
 
 
 def test_a_start_beside_a_run_that_has_just_begun_deletes_nothing_of_it(tmp_path):
     config = load([*TINY, "algo=sac", f"run_dir={tmp_path / 'run'}"])
-    with run_folder.claim_folder(config) as folder:
+    with run_folder.claim_folders([config], {}) as (folder,):
         (folder / "metrics.jsonl").touch()
         refused = pytest.raises(UsageError, match="is being written by process")
-        with refused, run_folder.claim_folder(config):
+        with refused, run_folder.claim_folders([config], {}):
             pass
         assert sorted(path.name for path in folder.iterdir()) == ["lock", "metrics.jsonl"]

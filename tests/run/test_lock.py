@@ -3,7 +3,6 @@
 import errno
 import fcntl
 import os
-import re
 import signal
 import socket
 import subprocess
@@ -96,19 +95,6 @@ def test_a_disk_without_locks_or_that_fails_is_one_line(tmp_path, monkeypatch, c
     line = rf"run_dir={tmp_path}: cannot be written to \(Input/output error\)"
     with pytest.raises(UsageError, match=line), lock(tmp_path, "run_dir"):
         pass
-
-
-def test_two_fresh_runs_of_one_folder_do_not_both_begin(tmp_path):
-    """Begun at the same moment: one trains, the other ends with 2; each row is there once."""
-    overrides = [*TINY, "algo=sac", "total_steps=100", f"run_dir={tmp_path / 'run'}"]
-    line = [sys.executable, "-m", "hybrid_rl.train", *overrides]
-    both = [subprocess.Popen(line, stderr=subprocess.PIPE, text=True) for _ in range(2)]
-    ends = [(process.communicate()[1], process.returncode) for process in both]
-    (refused, code), (quiet, fine) = sorted(ends, key=lambda end: -end[1])
-    assert (code, fine, quiet) == (2, 0, "")
-    assert re.search("is being written by|holds a run", refused)
-    rows = (tmp_path / "run" / "metrics.jsonl").read_text().splitlines()
-    assert len(rows) == len(set(rows))
 
 
 def test_the_lock_of_a_folder_with_the_name_of_a_moved_one_stays(tmp_path):

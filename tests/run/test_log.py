@@ -66,21 +66,15 @@ def test_a_number_reads_back_as_the_same_float32(value):
 
 
 @pytest.mark.parametrize("bad", [float("nan"), float("inf"), jnp.float32(-jnp.inf)])
-def test_what_is_not_finite_is_null(tmp_path, bad):
+def test_what_is_not_finite_is_null_and_neither_it_nor_a_word_is_a_scalar(tmp_path, bad):
     with RunLog(tmp_path, [0]) as log:
-        log.write([row(1, loss=bad)])
+        log.write([row(1, loss=bad, diverged="sac/q")])
         log.summary({"final_return": [1.5, float(bad)]})
     strict = {"parse_constant": pytest.fail}
-    assert json.loads(lines(tmp_path)[0], **strict)["loss"] is None
+    written = json.loads(lines(tmp_path)[0], **strict)
+    assert (written["loss"], written["diverged"]) == (None, "sac/q")
     summary = json.loads((tmp_path / "summary.json").read_text(), **strict)
     assert summary == {"final_return": [1.5, None]}
-    assert scalars(tmp_path / "tensorboard") == []
-
-
-def test_a_word_is_a_row_but_no_scalar(tmp_path):
-    with RunLog(tmp_path, [0]) as log:
-        log.write([row(3, diverged="sac/q")])
-    assert json.loads(lines(tmp_path)[0])["diverged"] == "sac/q"
     assert scalars(tmp_path / "tensorboard") == []
 
 
@@ -123,23 +117,6 @@ def test_flushed_rows_survive_a_kill(tmp_path):
     assert scalars(tmp_path / "tensorboard") == [(1, "a", 5)]
 
 
-@pytest.mark.parametrize(
-    "edit", [lambda text: "", lambda text: text[:-9], lambda text: "\n" + text]
-)
-def test_a_rewind_says_where_rows_are_gone(tmp_path, edit):
-    path = tmp_path / "metrics.jsonl"
-    with RunLog(tmp_path, [0]) as log:
-        log.write([row(1, a=1), row(2, a=2)])
-        offset = log.flush()
-    path.write_text(edit(path.read_text()))
-    with RunLog(tmp_path, [0]) as log:
-        (note,) = log.rewind(offset, step=2)
-        log.write([row(3, a=3)])
-    assert "rows before step 2 are missing or edited" in note
-    assert json.loads(lines(tmp_path)[-1])["step"] == 3
-    assert all(json.loads(line) for line in lines(tmp_path) if line)
-
-
 def test_versions_commit_and_device_are_reported():
     versions = provenance.versions()
     assert {"python", "hybrid_rl", *provenance.PACKAGES} == set(versions)
@@ -147,16 +124,6 @@ def test_versions_commit_and_device_are_reported():
     commit = provenance.git_commit()
     assert commit is None or re.fullmatch("[0-9a-f]{40}", commit)
     assert re.match(r"(cpu|gpu|tpu): .+", provenance.device())
-
-
-def test_the_commit_of_another_checkout_is_not_ours(monkeypatch, tmp_path):
-    monkeypatch.setattr(provenance, "__file__", str(tmp_path / "a" / "b" / "c" / "d.py"))
-    assert provenance.git_commit() is None
-    ours = provenance.Path(__file__).resolve().parents[2] / "hybrid_rl" / "run" / "logs" / "log.py"
-    monkeypatch.setattr(provenance, "__file__", str(ours))
-    before = provenance.git_commit()
-    monkeypatch.setenv("GIT_DIR", str(tmp_path))  # as in a hook
-    assert provenance.git_commit() == before
 
 
 @pytest.fixture
@@ -168,29 +135,21 @@ def now(monkeypatch):
     return now
 
 
-def test_plain_lines_come_at_once_and_then_every_few_seconds(capsys, now):
-    with Progress(2000, label="hopper sac") as shown:
+def test_plain_lines_come_at_once_and_then_within_ten_seconds(capsys, now):
+    """With a speed from the step on from which it is representative."""
+    with Progress(2000, label="hopper sac", steady=1020) as shown:
         shown.note("compiling ...")
         assert capsys.readouterr().out == "compiling ...\n"
         for step in range(1010, 1200, 10):  # one second each
             now[0] += 1
             shown.update(step, {"train/return": 12.34, "perf/env_steps_per_s": 5e4, "x": 1.0})
+        shown.update(1190, {"eval/return": 5.0}, say=True)
     printed = capsys.readouterr().out.splitlines()
-    assert printed[0] == "hopper sac  1,010/2,000 (50%)  return 12.3  50,000 decisions/s"
-    assert (
-        printed[1] == "hopper sac  1,090/2,000 (55%)  return 12.3  50,000 decisions/s  0:01:31 left"
-    )
+    values = "return 12.3  50,000 decisions/s"
+    assert printed[0] == f"hopper sac  1,010/2,000 (50%)  {values}"
+    assert printed[1] == f"hopper sac  1,090/2,000 (55%)  {values}  0:01:31 left"
     assert [line.split()[2] for line in printed[2:]] == ["1,170/2,000", "1,190/2,000"]
-
-
-def test_a_line_comes_within_ten_seconds_also_in_a_long_run(capsys, now):
-    with Progress(10**6) as shown:
-        for step in range(3600):
-            now[0] += 1
-            shown.update(step, {})
-            if step == 3000:
-                capsys.readouterr()
-    assert 60 <= len(capsys.readouterr().out.splitlines()) <= 120
+    assert "  return 12.3  eval 5.0  " in printed[-1]
     assert progress.PAUSE + 1 < 10  # the second is the beat's
 
 
@@ -202,38 +161,13 @@ def test_a_line_comes_while_nothing_is_updated(capsys, monkeypatch):
     assert "ant sac  0/100 (0%)  compiling for 0:00:01" in capsys.readouterr().out
 
 
-def test_an_evaluation_is_shown_with_its_own_step(capsys, now):
-    with Progress(1000, label="ant") as shown:
-        shown.update(500, {"train/return": 1.0}, say=False)
-        shown.update(500, {"eval/return": 2.0}, say=True)
-        now[0] += 60
-        shown.update(600, {"train/return": 3.0})
-        assert " ".join(shown._numbers(True)).startswith("return 3.0 eval 2.0 at 500")
-        shown.update(1000, {}, say=False)
-        shown.update(1000, {"eval/return": 4.0}, say=True)
-    assert [line.split("  ")[1:4] for line in capsys.readouterr().out.splitlines()] == [
-        ["500/1,000 (50%)", "return 1.0", "eval 2.0"],
-        ["600/1,000 (60%)", "return 3.0", "1.7 steps/s"],
-        ["1,000/1,000 (100%)", "return 3.0", "eval 4.0"],
-    ]
-
-
-def test_no_speed_is_shown_before_it_is_steady(capsys, now):
-    with Progress(1000, steady=500) as shown:
-        for step in (100, 200, 300):
-            now[0] += 9
-            shown.update(step, {})
-    assert "/s" not in capsys.readouterr().out
-
-
 def test_a_terminal_shows_a_bar():
     """In a pseudo-terminal of 60 columns, since nothing else is one."""
     code = (
         "from hybrid_rl.run.logs.progress import Progress\n"
         "with Progress(2000, 'hopper sac') as shown:\n"
         "    shown.note('compiling [soon] ...')\n"
-        "    for value in (-11.0, 10.0, -4.0):\n"
-        "        shown.update(1000, {'train/return': 12.3, 'eval/return': value})\n"
+        "    shown.update(1000, {'train/return': 12.3, 'eval/return': -4.0})\n"
     )
     ours, theirs = os.openpty()
     plain = {"TERM": "xterm", "COLUMNS": "60", "PATH": os.environ["PATH"], "PYTHONUTF8": "1"}
@@ -246,9 +180,7 @@ def test_a_terminal_shows_a_bar():
     assert child.wait() == 0
     shown = re.sub(r"\x1b\[[0-9;?]*[a-zA-Z]", "", text.decode())
     assert "compiling [soon] ..." in shown
-    assert re.search(
-        r"hopper sac .*1,000/2,000\s+return 12\.3  eval -4\.0\s+\u2581\u2588\u2583", shown
-    )
+    assert re.search(r"hopper sac .*1,000/2,000\s+return 12\.3  eval -4\.0", shown)
     assert max(len(line) for line in re.split(r"[\r\n]+", shown)) <= 60
 
 

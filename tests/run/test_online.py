@@ -93,13 +93,6 @@ def test_an_episode_begins_with_a_controller_that_remembers_nothing(ends):
     assert learner._decide._acting.control == ()
 
 
-def test_it_learns_with_debug_nans_though_rows_have_nan():
-    with jax.debug_nans(True):
-        learner = made()
-        drive(learner, 10)
-    assert np.isfinite(learner.metrics["sac/critic_loss"])
-
-
 def test_it_learns_in_the_background():
     with made("background") as learner:
         first = learner._decide.params
@@ -218,13 +211,3 @@ def test_a_checkpoint_of_another_run_is_one_line(tmp_path):
         (tmp_path / "a" / "config.yaml").write_text(edited)
         with pytest.raises(UsageError, match=f"was {key.partition(' ')[2]} and is {now}; put it"):
             OnlineLearner.load(tmp_path / "a", "inline")
-
-
-def test_a_world_too_large_for_the_memory_is_one_line():
-    with pytest.raises(UsageError, match=r"would take [\d,.]+ GB and there are"):
-        OnlineLearner(METHOD, obs=10**9, act=1)
-
-
-def test_a_name_that_no_folder_has_is_one_line(tmp_path):
-    with pytest.raises(UsageError, match=r"folder=.*: cannot be written to \("):
-        made().save(tmp_path / ("x" * 300))

@@ -49,7 +49,7 @@ def stopped(folder, by, *overrides):
 
 @pytest.mark.parametrize(
     ("by", "code"),
-    [("SIGINT and SIGTERM", {130, 143}), ("SIGKILL", {-signal.SIGKILL}), ("moved", {1})],
+    [("SIGINT and SIGTERM", {130, 143}), ("SIGKILL", {-signal.SIGKILL})],
 )
 def test_a_stopped_run_goes_on_bit_for_bit(whole, tmp_path, by, code):
     folder = tmp_path / "run"

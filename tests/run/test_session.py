@@ -16,7 +16,6 @@ from hybrid_rl.run import schedule, session
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.evaluations import Evaluations
 from hybrid_rl.run.files import integrity
-from hybrid_rl.run.logs.progress import Progress
 from hybrid_rl.run.logs.rows import Gathered
 from hybrid_rl.run.schedule import Pace, Schedule, Speed
 from hybrid_rl.run.session import Session
@@ -55,7 +54,7 @@ def stop_at(monkeypatch, step):
     monkeypatch.setattr(Session, "_advance", stopped)
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGHUP])
 def test_a_program_that_trains_hears_the_signal_after_the_checkpoint(monkeypatch, tmp_path, number):
     """As though nothing had come between: a script ends, and no loop starts its next run."""
     folder, advance, heard = tmp_path / "run", Session._advance, []
@@ -119,11 +118,6 @@ def test_metrics_in_parts_are_the_metrics_as_one():
         assert list(got) == ["b", "a"]
         assert got["b"].tobytes() == values.tobytes()
     assert parts.pack() == ([], None)
-
-
-def test_calls_of_other_lengths_make_the_same_run(whole, short, tmp_path):
-    run(tmp_path / "run", *SAC)
-    assert interrupt.difference(tmp_path / "run", whole) == ""
 
 
 def test_a_run_stopped_anywhere_goes_on_bit_for_bit(whole, short, tmp_path, capsys):
@@ -250,19 +244,6 @@ def test_the_speed_is_that_of_learning(whole):
     speed.add(100, 2.0)
     speed.add(50, 1.0)
     assert speed.rate == 50
-
-
-def test_progress_gets_the_speed_of_the_newest_call_where_a_row_ends_too(tmp_path, monkeypatch):
-    given, update = [], Progress.update
-
-    def seen(self, step, scalars, say=None):
-        given.append((step, "perf/env_steps_per_s" in scalars))
-        update(self, step, scalars, say)
-
-    monkeypatch.setattr(Progress, "update", seen)
-    run(tmp_path / "run", *SAC)
-    assert (250, True) in given  # a row
-    assert all(known for step, known in given if step > 100)
 
 
 def test_with_debug_nans_a_run_ends_in_the_call_that_made_them_and_not_before(

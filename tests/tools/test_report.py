@@ -11,7 +11,6 @@ from tiny import call, only_line
 
 from hybrid_rl.cli import command
 from hybrid_rl.tools.report import __main__ as report
-from hybrid_rl.tools.report import panels
 
 CONFIG = "task: hopper\nalgo: {algo}\nseed: 0\nlearners:\n  policy:\n    rate: {rate}\nenv: {{}}\n"
 FILM = bytes(range(256))
@@ -131,14 +130,6 @@ def test_seeds_make_a_band_and_the_numbers_are_those_of_the_rows(runs):
     ends = cells[at + 4].split()[0], cells[at + 5].split()[0]
     assert ends == ("30.5", f"{area:.4g}")
     assert cells[at + 4].endswith("[30, 31]")
-
-
-def test_a_panel_is_named_by_its_metric_and_by_its_task_only_where_there_are_more(runs):
-    ((curves, drawing),) = panels.panels(runs[:1], "eval/return")
-    assert drawing.count("Evaluation return") == 1
-    assert ">hopper<" not in drawing
-    (axes,) = panels._panel(curves, tasks=2).axes
-    assert (axes.get_title(), axes.get_ylabel()) == ("Evaluation return, hopper", "")
 
 
 def test_what_is_missing_or_damaged_is_one_line(runs, tmp_path, capfd):

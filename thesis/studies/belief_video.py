@@ -69,7 +69,7 @@ def film(folder: Path, seed: int | None, steps: int, height: int, most: int) -> 
     length = min(steps or len(trial.s), len(trial.s))
     marks = _marks(length, most)
     drawn, views = Drawn(trial), []
-    with Progress(len(marks), label="learning again", unit="pictures") as progress:
+    with Progress(len(marks), label="learning again") as progress:
         for belief, mark in zip(beliefs(trial, marks), marks, strict=True):
             views.append(drawn.view(belief, mark))
             progress.update(len(views), {})

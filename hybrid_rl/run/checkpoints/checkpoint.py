@@ -5,21 +5,20 @@
                /meta.json      further values of the caller
                /manifest.json  every file above with its size and SHA-256
 
-A checkpoint is written to FOLDER/.STEP.tmp, forced to the disk, then renamed, so every folder
-whose name is a number is complete. An older checkpoint of that step is FOLDER/.STEP.replaced.tmp
-between the two renames, and counts as STEP until there is a new one. A checkpoint is renamed before
-it is deleted, so another process reads all of it or none, and then takes a newer one. What cannot
-be deleted stays, and other names get a number: .STEP.1.tmp. Leaves are
-stored flat, by their path in the state, so the state may consist of any containers, and a part of
-it (parameters without replay memory, say) can be restored alone.
+A checkpoint is written to a draft, forced to the disk, then renamed, so every folder whose name is
+a number is complete. An older checkpoint of that step is FOLDER/.STEP.replaced.NONCE.tmp between
+the two renames, and counts as STEP until there is a new one. A checkpoint is renamed before it is
+deleted, so another process reads all of it or none, and then takes a newer one. Leaves are stored
+flat, by their path in the state, so the state may consist of any containers, and a part of it
+(parameters without replay memory, say) can be restored alone.
 """
 
 import contextlib
 import json
 import os
 import re
+import secrets
 import shutil
-from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +31,7 @@ from hybrid_rl.types import PyTree
 
 KEEP = 2  # complete checkpoints
 ATTEMPTS = 100  # to read a folder whose checkpoints another process replaces
-NAME = re.compile(r"(\d+)|\.(\d+)\.replaced(?:\.\d+)?\.tmp")  # of a finished checkpoint
+NAME = re.compile(r"(\d+)|\.(\d+)\.replaced\.\w+\.tmp")  # of a finished checkpoint
 
 
 def steps(folder: Path) -> list[int]:
@@ -59,27 +58,18 @@ def meta(folder: Path) -> dict[str, Any]:
     return {}
 
 
-def save(
-    folder: Path,
-    step: int,
-    state: PyTree,
-    meta: dict,
-    keep: int = KEEP,
-    known: Collection[int] | None = None,
-) -> Path:
+def save(folder: Path, step: int, state: PyTree, meta: dict, keep: int = KEEP) -> Path:
     """Write FOLDER/STEP, then delete all but the newest `keep` checkpoints.
 
-    Checkpoints beyond `step` are deleted, too: the run was resumed from an earlier one. Only
-    checkpoints in `known` are deleted, as another process wrote the others; None: all of them.
+    Checkpoints beyond `step` are deleted, too: the run was resumed from an earlier one.
     meta: values that JSON can represent. After a CheckpointError earlier checkpoints are as before.
     """
     arrays, kinds = leaves.flatten(state)
     texts = {"meta.json": json.dumps(meta, indent=1), "leaves.json": json.dumps(kinds, indent=0)}
-    draft = folder / f".{step}.tmp"
+    draft = _hidden(folder, str(step))
     try:
         own_folder(folder)  # not its parents: a run folder that is gone stays gone
         _recover(folder)
-        draft = _free(folder, str(step))
         draft.mkdir()
         made = draft.stat()
         _fits(folder, sum(array.nbytes for array in arrays.values()))
@@ -96,7 +86,7 @@ def save(
         if not isinstance(problem, Exception):  # Ctrl-C and the like
             raise
         raise CheckpointError(line) from problem
-    _prune(folder, step, keep, known)
+    _prune(folder, step, keep)
     return path
 
 
@@ -165,19 +155,18 @@ def _recover(folder: Path) -> None:
     for step, path in _finished(folder).items():
         if path.name != str(step):
             _rename(path, folder / str(step))
-    for stale in leftovers(folder):
-        shutil.rmtree(stale, ignore_errors=True)
+    _sweep(folder)
 
 
-def leftovers(folder: Path) -> list[Path]:
-    """Files in `folder` that belong to no checkpoint and could not be deleted."""
-    return sorted(folder.glob(".*.tmp"))
+def _sweep(folder: Path) -> None:
+    """Delete what belongs to no checkpoint; what cannot be deleted stays."""
+    for path in folder.glob(".*.tmp"):
+        shutil.rmtree(path, ignore_errors=True)
 
 
-def _free(folder: Path, stem: str) -> Path:
-    """A path FOLDER/.STEM.tmp, or FOLDER/.STEM.NUMBER.tmp, at which nothing is."""
-    names = (f".{stem}{end}.tmp" for end in ("", *(f".{number}" for number in range(1, 10_000))))
-    return next(path for path in map(folder.joinpath, names) if not os.path.lexists(path))
+def _hidden(folder: Path, stem: str) -> Path:
+    """A new name of what is no checkpoint, or no longer: FOLDER/.STEM.NONCE.tmp."""
+    return folder / f".{stem}.{secrets.token_hex(4)}.tmp"
 
 
 def _discard(draft: Path) -> None:
@@ -191,21 +180,20 @@ def _discard(draft: Path) -> None:
 def _rename(draft: Path, path: Path) -> Path:
     """Give a complete draft its name, which an older checkpoint loses."""
     if os.path.lexists(path):
-        path.rename(_free(path.parent, f"{path.name}.replaced"))
+        path.rename(_hidden(path.parent, f"{path.name}.replaced"))
     draft.rename(path)
     sync(path.parent)
     return path
 
 
-def _prune(folder: Path, newest: int, keep: int, known: Collection[int] | None) -> None:
-    """Delete the `known` checkpoints that the new one replaces."""
-    ours = [s for s in steps(folder) if known is None or s in known or s == newest]
-    sound = [s for s in ours if s <= newest and not integrity.verify(folder / str(s), False)]
-    for step in set(ours) - set(sound[-keep:]):
+def _prune(folder: Path, newest: int, keep: int) -> None:
+    """Delete the checkpoints that the new one replaces."""
+    known = steps(folder)
+    sound = [s for s in known if s <= newest and not integrity.verify(folder / str(s), False)]
+    for step in set(known) - set(sound[-keep:]):
         with contextlib.suppress(OSError):
-            (folder / str(step)).rename(_free(folder, f"{step}.pruned"))
-    for path in leftovers(folder):
-        shutil.rmtree(path, ignore_errors=True)
+            (folder / str(step)).rename(_hidden(folder, f"{step}.pruned"))
+    _sweep(folder)
 
 
 def _refusal(folder: Path, step: int, problem: BaseException) -> str:

@@ -1,8 +1,9 @@
 """The checkpoints of a run: the learners' state, its record, and the metrics since the last row."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import jax
@@ -18,9 +19,10 @@ from hybrid_rl.run.schedule import Speed
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.loop import Loop
 
-# {"seed", "step", "quantity"} of a learner that diverged; "world": what else is to blame;
-# "of": its numbers, where a program has several sets of them
+# {"seed", "step", "quantity"} of a learner that diverged; "of": its numbers, where a program has
+# several sets of them
 End = dict[str, Any]
+NONE: Mapping[int, End] = MappingProxyType({})
 
 
 @dataclass
@@ -61,89 +63,15 @@ def read_part(
 
 def concatenated(states: Sequence[Any]) -> Any:
     """The trees [S, ...] of the learners of several runs as one."""
-    return jax.tree.map(lambda *leaves: jnp.concatenate(leaves), *states)
+    first, *others = states
+    return jax.tree.map(lambda *each: jnp.concatenate(each), *states) if others else first
 
 
-@dataclass
-class Store:
-    """Checkpoints of `loop` in `folder`; replay: whether they hold the replay memory.
-
-    settings: config.yaml by full keys, which each checkpoint repeats.
-    """
-
-    folder: Path
-    loop: Loop
-    replay: bool
-    settings: Mapping[str, Any]
-    newest: int | None = None  # step of the checkpoint that was written or read last
-    known: set[int] = field(default_factory=set)  # checkpoints that may be deleted
-
-    def save(self, state: Any, gathered: Gathered, record: Record) -> None:
-        """Write a checkpoint of the run."""
-        names, array = gathered.pack()
-        leaves = {part.name: getattr(state, part.name) for part in fields(state)}
-        if not self.replay:
-            leaves["memory"] = None
-        if array is not None:
-            leaves["gathered"] = array
-        meta = {
-            "seeds": list(self.loop.seeds),
-            "capacity": self.loop.agent.replay.capacity,
-            "settings": dict(self.settings),
-            "gathered": {"names": names, "shape": [] if array is None else list(array.shape)},
-            "record": asdict(record),
-        }
-        checkpoint.save(self.folder, record.step, leaves, meta, known=self.known)
-        self.known.add(record.step)
-        self.newest = record.step
-
-    def restore(self, step: int | None = None) -> tuple[Any, Gathered, Record, list[str]]:
-        """(state, metrics since the last row, record, notes) of the newest sound checkpoint.
-
-        The replay memory is empty if checkpoints do not hold it. step: of another checkpoint.
-        """
-        self.known = set(checkpoint.steps(self.folder))
-        like = self.loop.shapes().replace(memory=None)
-        self.newest, state, meta, notes = checkpoint.restore(self.folder, like, step)
-        memory = self._memory(meta["capacity"]) if self.replay else self.loop.init().memory
-        gathered, packed = Gathered(), meta.get("gathered", {})
-        if packed.get("names"):
-            array = jax.ShapeDtypeStruct(tuple(packed["shape"]), np.float32)
-            gathered.unpack(packed["names"], self._read({"gathered": array})["gathered"])
-        record = Record(**meta["record"])
-        record.learning = Speed(**meta["record"]["learning"])
-        return self.loop.on_devices(state.replace(memory=memory)), gathered, record, notes
-
-    def learner(self, number: int) -> Any:
-        """AgentState [...] of one learner in the newest checkpoint, or else its first one."""
-        key = jax.random.key(self.loop.seeds[number])
-        if self.newest is None:
-            return jax.jit(self.loop.agent.init)(key)
-        shapes = self.loop.shapes()
-        like = shapes if self.replay else shapes.replace(memory=None)
-        one = jax.tree.map(lambda rows: rows[number], self._read(like))
-        if self.replay:
-            return one
-        return one.replace(memory=jax.jit(self.loop.agent.init)(key).memory)
-
-    def _read(self, like: Any) -> Any:
-        """A part of the newest checkpoint."""
-        return checkpoint.restore(self.folder, like, self.newest)[1]
-
-    def _memory(self, capacity: int) -> Any:
-        """The checkpoint's replay memory, which held `capacity`, in the size that it has now.
-
-        Extending a run may enlarge the memory. One that is bounded by the length of the run has not
-        wrapped, so padding suffices.
-        """
-        agent = with_capacity(self.loop.agent, capacity)
-        memory = read_part(self.folder, agent, self.loop.seeds, "memory", self.newest)[1].memory
-
-        def grown(old: jax.Array, now: Any) -> jax.Array:
-            ends = zip(old.shape, now.shape, strict=True)
-            return jnp.pad(old, [(0, size - filled) for filled, size in ends])
-
-        return jax.tree.map(grown, memory, self.loop.shapes().memory)
+def each_learner(change: Callable[[Any], Any], memory: Any) -> Any:
+    """The results [S, ...] of `change` for the memory of each learner."""
+    learners = range(len(memory.count))
+    each = [change(jax.tree.map(lambda leaf, s=s: leaf[s], memory)) for s in learners]
+    return jax.tree.map(lambda *leaves: jnp.stack(leaves), *each)
 
 
 @dataclass
@@ -151,22 +79,20 @@ class Shelf:
     """The records and checkpoints of a program: of its run or, with an axis, of each of K runs.
 
     Each of the K folders has the rows and the checkpoints of its n learners, as if they were alone;
-    `loop` trains all S = K n. logs and stores: [K].
+    `loop` trains all S = K n. An OnlineLearner has no logs.
     """
 
     loop: Loop
-    logs: Sequence[RunLog]
-    stores: Sequence[Store]
-
-    @property
-    def newest(self) -> int | None:
-        """The step of the checkpoint that was written or read last."""
-        return self.stores[-1].newest
+    folders: Sequence[Path]  # [K] of checkpoints
+    settings: Sequence[Mapping[str, Any]]  # [K] config.yaml by full keys, which checkpoints repeat
+    logs: Sequence[RunLog] = ()  # [K]
+    replay: bool = True  # whether checkpoints hold the replay memory
+    newest: int | None = None  # step of the checkpoints that were written or read last
 
     def shares(self) -> list[slice]:
         """The learners of each folder."""
-        size = len(self.loop.seeds) // len(self.logs)
-        return [slice(k * size, (k + 1) * size) for k in range(len(self.logs))]
+        size = len(self.loop.seeds) // len(self.folders)
+        return [slice(k * size, (k + 1) * size) for k in range(len(self.folders))]
 
     def write(self, new: Sequence[Row], wall_s: float) -> None:
         """Append rows {"step", "learner", name: number or word, ...}, with the wall time [s]."""
@@ -176,58 +102,102 @@ class Shelf:
             for row, seed in zip(rows, seeds, strict=True):
                 log.write([{"step": row.pop("step"), "seed": seed} | row | {"wall_s": wall_s}])
 
-    def save(self, state: Any, gathered: Gathered, record: Record, ends: Mapping[int, End]) -> None:
-        """Write a checkpoint to each folder; as `Store.save`. ends: by the learner's number."""
-        parts = gathered.split(len(self.logs))
-        for log, store, share, part in zip(
-            self.logs, self.stores, self.shares(), parts, strict=True
-        ):
+    def save(
+        self, state: Any, gathered: Gathered, record: Record, ends: Mapping[int, End] = NONE
+    ) -> None:
+        """Write a checkpoint to each folder. state: [S, ...]; ends: by the learner's number."""
+        sizes = [log.flush() for log in self.logs] or [0]
+        parts = gathered.split(len(self.folders))
+        each = zip(self.folders, self.settings, self.shares(), sizes, parts, strict=True)
+        for folder, settings, share, size, part in each:
             mine = replace(
                 record,
                 returns=record.returns[share],
                 final_eval=record.final_eval[share],
-                metrics_bytes=log.flush(),
+                metrics_bytes=size,
                 ends=[end for s, end in ends.items() if share.start <= s < share.stop],
             )
             own = state
-            if len(self.logs) > 1:  # of which the configuration has the numbers
+            if len(self.folders) > 1:  # of which the configuration has the numbers
                 own = jax.tree.map(lambda leaf, at=share: leaf[at], state.replace(numbers={}))
-            store.save(own, part, mine)
+            leaves = {each.name: getattr(own, each.name) for each in fields(own)}
+            leaves |= {} if self.replay else {"memory": None}
+            names, array = part.pack()
+            leaves |= {} if array is None else {"gathered": array}
+            meta = {
+                "seeds": list(self.loop.seeds[share]),
+                "capacity": self.loop.agent.replay.capacity,
+                "settings": dict(settings),
+                "gathered": {"names": names, "shape": [] if array is None else list(array.shape)},
+                "record": asdict(mine),
+            }
+            checkpoint.save(folder, record.step, leaves, meta)
+        self.newest = record.step
 
     def restore(self) -> tuple[Any, Gathered, Record, dict[int, End], list[str]]:
         """(state [S, ...], metrics since the last row, record, ends by learner, notes).
 
         All from the newest sound checkpoints of one step; a kill may have left others.
         """
-        got = [store.restore() for store in self.stores]
-        step = min(record.step for _, _, record, _ in got)
-        for k, store in enumerate(self.stores):
-            if got[k][2].step > step:
-                got[k] = store.restore(step)
-        states, gathered, records, notes = zip(*got, strict=True)
-        ends: dict[int, End] = {}
+        state, metas, notes = self._state(None)
+        records, ends = [Record(**meta["record"]) for meta in metas], {}
         for record, share in zip(records, self.shares(), strict=True):
             seeds = self.loop.seeds[share]
             ends |= {share.start + seeds.index(end["seed"]): end for end in record.ends}
-        lines = [line for own in notes for line in own]
-        for log, record in zip(self.logs, records, strict=True):
-            lines += log.rewind(record.metrics_bytes, step)
+        for log, record in zip(self.logs, records, strict=bool(self.logs)):
+            notes += log.rewind(record.metrics_bytes, record.step)
         whole = replace(
             records[0],
             returns=[pairs for record in records for pairs in record.returns],
             final_eval=[value for record in records for value in record.final_eval],
             wall_s=max(record.wall_s for record in records),
             unevaluated=any(record.unevaluated for record in records),
+            learning=Speed(**metas[0]["record"]["learning"]),
             ends=[],
         )
-        state = states[0]
-        if len(states) > 1:
-            state = concatenated(states).replace(numbers=self.loop.numbers)
-            state = self.loop.on_devices(state)
-        return state, Gathered.joined(gathered), whole, ends, lines
+        gathered = Gathered.joined(list(map(self._gathered, self.folders, metas)))
+        return self.loop.on_devices(state), gathered, whole, ends, notes
 
     def learner(self, number: int) -> Any:
         """AgentState [...] of one learner in the newest checkpoint, or else its first one."""
-        k, i = divmod(number, len(self.loop.seeds) // len(self.logs))
-        numbers = {path: values[number] for path, values in self.loop.numbers.items()}
-        return self.stores[k].learner(i).replace(numbers=numbers)
+        state = self.loop.init() if self.newest is None else self._state(self.newest)[0]
+        return jax.tree.map(lambda leaf: leaf[number], state)
+
+    def _state(self, step: int | None) -> tuple[Any, list[dict[str, Any]], list[str]]:
+        """(state [S, ...], meta of each folder, notes) of a step; None: the newest of all folders.
+
+        The memory is empty if checkpoints hold none.
+        """
+        one = Loop(self.loop.agent, self.loop.seeds[self.shares()[0]], 1)
+        like = one.shapes().replace(memory=None)
+        read = [checkpoint.restore(folder, like, step) for folder in self.folders]
+        self.newest = min(reached for reached, *_ in read)
+        for k, folder in enumerate(self.folders):
+            if read[k][0] > self.newest:
+                read[k] = checkpoint.restore(folder, like, self.newest)
+        _, states, metas, notes = zip(*read, strict=True)
+        state = concatenated(states).replace(numbers=self.loop.numbers)
+        if self.replay:
+            memory = concatenated(list(map(self._memory, self.folders, metas)))
+        else:
+            memory = self.loop.init().memory
+        return state.replace(memory=memory), [*metas], [line for own in notes for line in own]
+
+    def _memory(self, folder: Path, meta: Mapping[str, Any]) -> Any:
+        """The replay memory [n, ...] in the newest checkpoint of a folder, in its size of now.
+
+        Extending a run may enlarge the memory.
+        """
+        agent, now = with_capacity(self.loop.agent, meta["capacity"]), self.loop.agent.replay
+        seeds = self.loop.seeds[self.shares()[0]]
+        memory = read_part(folder, agent, seeds, "memory", self.newest)[1].memory
+        return memory if meta["capacity"] == now.capacity else each_learner(now.resized, memory)
+
+    def _gathered(self, folder: Path, meta: Mapping[str, Any]) -> Gathered:
+        """The metrics in the newest checkpoint of a folder."""
+        gathered, packed = Gathered(), meta.get("gathered", {})
+        if packed.get("names"):
+            like = {"gathered": jax.ShapeDtypeStruct(tuple(packed["shape"]), np.float32)}
+            array = checkpoint.restore(folder, like, self.newest)[1]["gathered"]
+            gathered.unpack(packed["names"], array)
+        return gathered

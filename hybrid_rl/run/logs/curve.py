@@ -1,24 +1,11 @@
-"""Curves in characters: of a line's height during a run, and in plain ones for its end."""
+"""A curve in characters, for a console."""
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 WIDTH, HEIGHT = 60, 9  # characters
-BLOCKS = "\N{LOWER ONE EIGHTH BLOCK}\u2582\u2583\u2584\u2585\u2586\u2587\N{FULL BLOCK}"
-LATEST = 30  # values of a small curve
-
-
-def small(values: Sequence[float]) -> str:
-    """The LATEST of `values` that are finite as blocks, between the lowest and the highest."""
-    known = [value for value in values if math.isfinite(value)][-LATEST:]
-    if not known:
-        return ""
-    low, high = min(known), max(known)
-    step = (len(BLOCKS) - 1) / (high - low) if high > low else 0.0
-    return "".join(BLOCKS[round((value - low) * step)] for value in known)
 
 
 def drawn(x: ArrayLike, y: ArrayLike, title: str, below: str) -> str:

@@ -1,4 +1,4 @@
-"""The records of a run: metrics.jsonl, summary.json, and loggers, of which TensorBoard's is one.
+"""The records of a run: metrics.jsonl, summary.json, TensorBoard's and perhaps W&B's.
 
 A checkpoint stores the length of metrics.jsonl at that time; a resumed run truncates the file to
 that length, so that it has every row exactly once.
@@ -16,14 +16,15 @@ from hybrid_rl.errors import CheckpointError
 from hybrid_rl.files.atomic import open_own
 from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.files.reading import lines
-from hybrid_rl.run.logs.loggers import KINDS, Begun, Logger
+from hybrid_rl.run.logs.loggers import Begun, WandB
 from hybrid_rl.run.logs.records import Row, json_value, row_of
 
 
 class RunLog:
-    """Writes rows of numbers to a run folder, which exists, and to the loggers `names`.
+    """Writes rows of numbers to a run folder, which exists.
 
-    config: settings of the run, for loggers. on_row: a function that gets the rows, too.
+    config: settings of the run, for loggers. wandb: W&B gets the rows, too, and so does the
+    function `on_row`.
     """
 
     def __init__(
@@ -31,13 +32,13 @@ class RunLog:
         run_dir: Path,
         seeds: Sequence[int],
         config: dict[str, Any] | None = None,
-        names: Sequence[str] = (),
+        wandb: bool = False,
         on_row: Callable[[Row], Any] | None = None,
     ) -> None:
         self.run_dir, self.path = run_dir, run_dir / "metrics.jsonl"
         self._file = open_own(self.path)
-        self._begun, self._names, self._on_row = Begun(run_dir, seeds, config or {}), names, on_row
-        self._loggers: list[Logger] = []  # opened by the first row
+        self._begun, self._wandb, self._on_row = Begun(run_dir, seeds, config or {}), wandb, on_row
+        self._loggers: list[Any] = []  # opened by the first row
 
     def __enter__(self) -> Self:
         return self
@@ -65,9 +66,8 @@ class RunLog:
         from hybrid_rl.run.logs.tensorboard import TensorBoard  # 0.2 s
 
         self._check()
-        for kind in (TensorBoard, *(KINDS[name] for name in self._names)):
+        for kind in (TensorBoard, WandB) if self._wandb else (TensorBoard,):
             self._loggers.append(kind(self._begun))
-        self._begun = self._begun._replace(rows=())
 
     def _check(self) -> None:
         """Raise CheckpointError if metrics.jsonl is no longer the file that is open here."""
@@ -93,12 +93,11 @@ class RunLog:
         state at the checkpoint.
         """
         whole = [line for line in lines(self.path, offset) if line.endswith(b"\n")]
-        rows = list(map(row_of, whole))  # before anything is cut
+        sound = all(row_of(line) is not None for line in whole)
         self._file.truncate(sum(map(len, whole)))
         self._file.seek(0, os.SEEK_END)
-        sound = [row for row in rows if row is not None]
-        self._begun = self._begun._replace(rows=sound, step=step)
-        if self._file.tell() == offset and None not in rows:
+        self._begun = self._begun._replace(step=step)
+        if self._file.tell() == offset and sound:
             return []
         return [f"{self.path} has changed: rows before step {step} are missing or edited"]
 

@@ -13,11 +13,11 @@ from tensorboardX.proto.event_pb2 import (  # made at import, so pyright cannot 
 from tensorboardX.proto.summary_pb2 import Summary  # pyright: ignore[reportAttributeAccessIssue]
 
 from hybrid_rl.files.atomic import own_folder
-from hybrid_rl.run.logs.loggers import Begun, Logger, scalars
+from hybrid_rl.run.logs.loggers import Begun, scalars
 from hybrid_rl.run.logs.records import Row
 
 
-class TensorBoard(Logger):
+class TensorBoard:
     """tensorboard/ in the run folder: a file, or a subfolder for each of several seeds.
 
     So a chart overlays the seeds. What older files have after the step of a resumed run is void.

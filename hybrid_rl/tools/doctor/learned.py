@@ -32,7 +32,7 @@ def diverged(run: Evidence) -> str | None:
     cure = (
         "the world returned it: mend its reward or its observation there"
         if of_world(what)
-        else first.get("world", "begin again with a smaller learning rate, or precision=float32")
+        else "begin again with a smaller learning rate, or precision=float32"
     )
     return f"{what} is not finite from step {first['step']:,} on, seed {first['seed']}: {cure}"
 

@@ -20,7 +20,7 @@ from hybrid_rl.outside.row_log import RowLog
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.files.lock import lock
 from hybrid_rl.run.logs.log import RunLog
-from hybrid_rl.run.logs.loggers import CSV, Begun, WandB
+from hybrid_rl.run.logs.loggers import Begun, WandB
 from hybrid_rl.run.logs.tensorboard import TensorBoard
 from hybrid_rl.types import Spec
 
@@ -120,7 +120,6 @@ WRITE = {  # what would be written, by the file or the folder that is a link
     "robot": lambda run: own_folder(run / "robot"),
     "lock": lambda run: lock(run, "run_dir").__enter__(),
     "metrics.jsonl": lambda run: RunLog(run, [0]).__enter__(),
-    "metrics.csv": lambda run: CSV(Begun(run, [0], {})),
     "tensorboard": tensorboard,
     "tensorboard/seed_0": tensorboard,
     "wandb": lambda run: WandB(Begun(run, [0], {})).id_of(0),
@@ -147,7 +146,7 @@ def test_no_writer_follows_a_link(tmp_path, monkeypatch, name, kind):
     before = contents(tmp_path)
     with pytest.raises((UsageError, CheckpointError), match="is a link"):
         WRITE[name](run)
-    if name not in ("metrics.csv", "robot/console", "robot/error"):  # after other files of its own
+    if name not in ("robot/console", "robot/error"):  # after other files of its own
         assert contents(tmp_path) == before
     assert not theirs.exists() or contents(theirs.parent)["precious"] == before["precious"]
     assert theirs.exists() == (kind in ("file", "folder"))
