@@ -81,7 +81,6 @@ def main() -> None:
     if given["at"] and out.suffix != ".png":
         raise UsageError(f"at={','.join(map(str, given['at']))}: needs out=FILE.png")
     offscreen.backend()  # raises before minutes of work
-    offscreen.check_size(given["width"], given["height"])
     if given["mode"] == "training" and given["run"]:
         _draw_training(given, out)
     elif given["task"]:

@@ -31,19 +31,6 @@ SIMULATED = [  # the same of a world in MuJoCo; None: of its model
         r"""w\.py:26: W\.reset: KeyError: "Invalid name 'hand'\. Valid names: \[\]\"""",
     ),
     (
-        "a field of MjData that no state keeps",
-        "data.qpos, data.qvel",
-        "data.qpos, data.site_xpos[0]",
-        r"w\.py:\d+: W\.reset: AttributeError: a state of the physics keeps no site_xpos: a "
-        r'sensor measures it, or .* reads=\("site_xpos",\)\) keeps it for physics\.read.*',
-    ),
-    (
-        "a field that was not asked for",
-        "-x[0] ** 2",
-        'Physics(ASSET).read(data, "cvel")[0, 0]',
-        r'w\.py:\d+: W\.reset: ValueError: reads=\(\) of Physics lacks "cvel"',
-    ),
-    (
         "a motor of a joint that is not there",
         None,
         ('<motor joint="', '<motor joint="un'),
@@ -64,19 +51,3 @@ SIMULATED = [  # the same of a world in MuJoCo; None: of its model
 def test_a_world_in_mujoco_is_refused_in_a_line_with_its_file(folder, old, new, line):
     code, model = (CRANE, changed(RAIL, *new)) if old is None else (changed(CRANE, old, new), RAIL)
     refused(line, check, world(folder, code, model))
-
-
-@pytest.mark.parametrize(
-    ("step", "sure"),
-    [
-        ("Physics(ASSET, self.physics).step(state.data, action, 4)", True),
-        ("jax.lax.fori_loop(0, 4, lambda i, x: PHYSICS.step(x, action, 1), state.data)", False),
-    ],
-)
-def test_physics_of_another_time_than_a_decision_is_one_line(folder, step, sure):
-    """Where it is certain: a loop hides how often it steps."""
-    text = changed(CRANE, "Physics(ASSET, self.physics).step(state.data, action, 10)", step)
-    text = changed(text, "import jax.numpy", "import jax\nimport jax.numpy")
-    notes = check(world(folder, changed(text, "\n\n\n@", "\nPHYSICS = Physics(ASSET)\n\n\n@")))
-    says = "makes 4 physics steps of 0.005 s, 0.02 s in all, and spec.dt is 0.05 s; write dt=0.02"
-    assert [says in note for note in notes] == ([True] if sure else [])
