@@ -24,10 +24,8 @@ from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
-import numpy as np
 from jax import Array
 
-from hybrid_rl.envs.analytic import arrangements
 from hybrid_rl.envs.analytic.point_mass import DT, move
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.kinematics import turned
@@ -36,7 +34,6 @@ from hybrid_rl.types import EnvState, Spec
 
 SUBSTEPS, CORNER = 10, 2  # steps of a decision; projections of a step, for corners of two objects
 STARTS, CLEAR = 64, 0.02  # candidates for the start; from a surface, in the box's shorter side
-FREE = 0.2  # share of the box that must be free: all candidates miss it once in a million
 THREE = (  # a disc, a box and a bar, without symmetry
     (0.25, 0.72, 0.0, 0.10, 0.10, 0.10),
     (0.72, 0.68, 0.4, 0.09, 0.06, 0.01),
@@ -75,18 +72,6 @@ class ContactPlane:
             raise FieldError(self, "low", "needs two numbers below high")
         for shape in self.objects:
             _check(shape, self.low, self.high)
-        if self._free() < FREE:
-            words = f"{FREE:.0%} of the box must be free for a ball of radius {self.radius}"
-            raise FieldError(self, "objects", f"leave no room to start; {words}")
-
-    def _free(self) -> float:
-        """Share of the box in which the ball can start, with the objects as listed."""
-        low, high = np.array(self.low), np.array(self.high)
-        sides = [np.linspace(a, b, 41) for a, b in zip(low, high, strict=True)]
-        points = np.stack(np.meshgrid(*sides), -1).reshape(-1, 2)
-        each = [arrangements.distance(points, shape) for shape in self.objects]
-        gap = self.radius + CLEAR * float(np.min(high - low))
-        return float((np.min(each, 0) > gap).mean()) if each else 1.0
 
     @property
     def middle(self) -> Array:
@@ -187,13 +172,12 @@ def _below(a: tuple[float, ...], b: tuple[float, ...]) -> bool:
 
 def _check(shape: tuple[float, ...], low: tuple[float, ...], high: tuple[float, ...]) -> None:
     """Raise ValueError unless `shape` is a rounded box whose middle lies between low and high."""
-    if len(shape) != 6 or not 0 < shape[5] <= min(shape[3:5]):
+    sound = len(shape) == 6 and 0 < shape[5] <= min(shape[3:5])
+    if not (sound and _below(low, shape[:2]) and _below(shape[:2], high)):
         raise ValueError(
-            f"objects={list(shape)}: each is x, y, angle, half width, half height, and a rounding "
-            "above 0 that is at most the smaller half"
+            f"objects={list(shape)}: each is x, y, in the box, angle, half width, half height, and "
+            "a rounding above 0 that is at most the smaller half"
         )
-    if not (_below(low, shape[:2]) and _below(shape[:2], high)):
-        raise ValueError(f"objects={list(shape)}: its middle lies outside of the box")
 
 
 def _geom(shape: tuple[float, ...], x: float, y: float) -> str:

@@ -40,11 +40,8 @@ def pose_of(env: Any) -> Callable[[EnvState], Array]:
 
 def check_drawable(env: Any) -> None:
     """Raise UsageError for an environment that cannot be drawn."""
-    try:
-        scene_of(env)
-        pose_of(env)
-    except ValueError as error:
-        raise UsageError(str(error)) from error
+    scene_of(env)
+    pose_of(env)
 
 
 def _first(env: Any) -> PhysicsState:
@@ -52,7 +49,7 @@ def _first(env: Any) -> PhysicsState:
     found = simulated(jax.eval_shape(env.reset, jax.random.key(0)))
     if not found:
         line = f"{type(env).__name__} has no `scene` and no `pose`: the world cannot be drawn"
-        raise ValueError(f"{line}; {DRAWN}")
+        raise UsageError(f"{line}; {DRAWN}")
     return found[0]
 
 

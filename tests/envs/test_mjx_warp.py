@@ -9,7 +9,7 @@ from worlds import BROKEN, LIFTED, OTHER, TOUCHING, make, reference, rollout
 from hybrid_rl.envs.hopper import Hopper
 from hybrid_rl.envs.mujoco.physics import Physics
 
-pytestmark = pytest.mark.turns(2)
+pytestmark = pytest.mark.turns(4)
 
 
 @pytest.fixture(scope="module")

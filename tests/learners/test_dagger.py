@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from toys import begun
 
-from hybrid_rl.core.labels import Queried
+from hybrid_rl.core.teaching import Queried
 from hybrid_rl.errors import UsageError
 from hybrid_rl.learners.dagger import DAgger, DAggerState
 from hybrid_rl.models.exact import Exact
@@ -30,13 +30,11 @@ POLICY = Deterministic(hidden=(8,))
 class Linear:
     """u = GAIN x."""
 
-    rows: int = 2  # of GAIN
-
     def init(self, spec: Spec) -> tuple[()]:
         return ()
 
     def act(self, params: Params, state: Any, obs: Any, key: Any) -> tuple:
-        return jnp.asarray(GAIN[: self.rows]) @ obs, state, {}
+        return jnp.asarray(GAIN) @ obs, state, {}
 
     def greedy(self) -> "Linear":
         return self
@@ -203,14 +201,6 @@ def test_the_evidence_is_a_sum_over_the_labels() -> None:
     learner = DAgger(POLICY, Linear(), Summed(), steps=0, batch_size=256, capacity=1000)
     labels = learner.params(after(learner, x))["labels"]
     np.testing.assert_allclose(labels.evidence, x.T @ x, rtol=0.05, atol=0.05 * 4500)
-
-
-def test_a_teacher_of_other_sizes_is_refused() -> None:
-    """Of other actions, and of other observations."""
-    with pytest.raises(ValueError, match=r"expert=Linear: decides \[1\], and must map 3 "):
-        DAgger(POLICY, Linear(rows=1)).init(jax.random.key(0), SPEC)
-    with pytest.raises(ValueError, match="expert=Linear: does not map 4 observed numbers to 2"):
-        DAgger(POLICY, Linear()).init(jax.random.key(0), SPEC._replace(obs=4))
 
 
 def test_a_task_without_an_expert_is_refused() -> None:
