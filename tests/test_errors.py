@@ -104,7 +104,10 @@ USAGE = [  # overrides of train, after task=pendulum algo=hybrid_stochastic; wor
     ("algo=kle3 settings=light", "In 'settings/light': Could not override 'proposal'"),
     ("task=gymnasium algo=mppi", "mppi plans on the true dynamics, and this task st"),
     ("task=gymnasium env.id=Pendulum-v1 reward=speed", "task=Pendulum-v1: reward needs an envi"),
-    ("algo=koopman_active features.terms=[[0,9]]", "features.terms=[0, 9]: must be some of the entries 0 to 2"),
+    (
+        "algo=koopman_active features.terms=[[0,9]]",
+        "features.terms=[0, 9]: must be some of the ",
+    ),
     # files and folders
     ("algo=bc", "demonstrations=demonstrations/pendulum.npz: no such file; `python -m hybrid_rl"),
     ("pretrain=3", "pretrain=3: the memory has no demonstrations to learn from"),

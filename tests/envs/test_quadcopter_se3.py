@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
-from worlds import along, follow, jitted, many, shown
+from worlds import along, follow, jitted, many
 
 from hybrid_rl.envs.analytic import quadcopter_se3 as quad
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
-from hybrid_rl.envs.analytic.state import fully_observed
 
 KEY = jax.random.key(5)
 PLAIN = QuadcopterSE3(twist=2.0, away=1.0)
@@ -132,9 +131,3 @@ def test_upside_down_ends_the_episode_only_if_it_should() -> None:
     np.testing.assert_array_equal(path.terminated, path.data[:, 11] < 0)
     np.testing.assert_array_equal(path.data, after.data)
     assert not after.terminated.any()
-
-
-def test_its_scene_shows_the_rotation() -> None:
-    x = twisted()
-    frame = shown(QuadcopterSE3(), fully_observed(jnp.asarray(x), jnp.zeros(()))).body("frame")
-    np.testing.assert_allclose(frame.xmat, x[3:12], atol=1e-5)

@@ -15,7 +15,6 @@ from hybrid_rl.learners.dagger import DAgger, DAggerState
 from hybrid_rl.models.exact import Exact
 from hybrid_rl.policies.deterministic import Deterministic
 from hybrid_rl.settings import build as config
-from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Batch, Params, Spec
 
 pytestmark = pytest.mark.turns(3)
@@ -206,18 +205,3 @@ def test_the_evidence_is_a_sum_over_the_labels() -> None:
 def test_a_task_without_an_expert_is_refused() -> None:
     with pytest.raises(UsageError, match="expert=null: this task has no expert"):
         config.build(config.load(["task=pendulum", "algo=dagger"]))
-
-
-@pytest.mark.parametrize("algo", ["dagger", "dail"])
-def test_a_resumed_run_equals_one_that_never_stopped(algo: str) -> None:
-    """All parameters, labels and records, bit for bit, from a copy of the state half-way."""
-    overrides = ["task=pendulum", "expert=regulator", f"algo={algo}", "dagger_learner.first=20"]
-    run = config.build(config.load([*overrides, "policy.hidden=[8]", "total_steps=60"]))
-    loop = Loop(run.agent, (0, 1), stride=60)
-    program = loop.compile(loop.init())
-    whole = program(loop.init(), jnp.int32(0), jnp.int32(60))[0]
-    half = program(loop.init(), jnp.int32(0), jnp.int32(30))[0]
-    stored = jax.tree.map(jnp.copy, half)
-    rest = program(loop.on_devices(stored), jnp.int32(30), jnp.int32(30))[0]
-    jax.tree.map(np.testing.assert_array_equal, whole.learners, rest.learners)
-    assert (np.asarray(whole.learners["policy"].labels.count) == 60).all()
