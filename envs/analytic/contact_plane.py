@@ -19,7 +19,6 @@ Source: thesis sections 5.3 and 5.4: a second-order point among fixed objects, f
 quick movements. Objects, their sizes, a, b and the error rates are our choice.
 """
 
-import math
 from typing import NamedTuple
 
 import jax
@@ -27,11 +26,12 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.analytic.point_mass import DT, move
-from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.envs.mujoco import mjcf, rounded_boxes
 from hybrid_rl.envs.mujoco.kinematics import turned
 from hybrid_rl.fields import Discount, FieldError, NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
 
+HALF = 0.03  # [m] half height of the objects, as they are drawn
 SUBSTEPS, CORNER = 10, 2  # steps of a decision; projections of a step, for corners of two objects
 STARTS, CLEAR = 64, 0.02  # candidates for the start; from a surface, in the box's shorter side
 THREE = (  # a disc, a box and a bar, without symmetry
@@ -142,7 +142,8 @@ class ContactPlane:
     def scene(self) -> str:
         """MJCF text of the scene for rendering."""
         x, y = ((a + b) / 2 for a, b in zip(self.low, self.high, strict=True))
-        geoms = "".join(_geom(shape, x, y) for shape in self.objects)
+        about = tuple((shape[0] - x, shape[1] - y, *shape[2:]) for shape in self.objects)
+        geoms = rounded_boxes.drawn(about, HALF)
         text = mjcf.text("contact_plane.xml").replace('<geom name="object" size="1"/>', geoms)
         edges = zip(("WEST", "SOUTH", "EAST", "NORTH"), (*self.low, *self.high), strict=True)
         for name, value in edges:
@@ -178,25 +179,3 @@ def _check(shape: tuple[float, ...], low: tuple[float, ...], high: tuple[float, 
             f"objects={list(shape)}: each is x, y, in the box, angle, half width, half height, and "
             "a rounding above 0 that is at most the smaller half"
         )
-
-
-def _geom(shape: tuple[float, ...], x: float, y: float) -> str:
-    """MJCF of a rounded box, 6 cm high, relative to the middle (x, y) of the plane."""
-    cx, cy, angle, half_x, half_y, rounding = shape
-    parts = [(half_x, half_y - rounding), (half_x - rounding, half_y)]
-    heights = 0.03, 0.0297, 0.0294  # different, since coinciding faces flicker
-    boxes = [
-        (0.0, 0.0, f'type="box" size="{a:g} {b:g} {h:g}"')
-        for (a, b), h in zip(parts, heights, strict=False)
-        if min(a, b) > 0
-    ]
-    corners = {(i * (half_x - rounding), j * (half_y - rounding)) for i in (-1, 1) for j in (-1, 1)}
-    discs = [
-        (a, b, f'type="cylinder" size="{rounding:g} {heights[2]:g}"') for a, b in sorted(corners)
-    ]
-    cos, sin = math.cos(angle), math.sin(angle)
-    return "".join(
-        f'<geom pos="{cx - x + cos * a - sin * b:g} {cy - y + sin * a + cos * b:g} 0.03" '
-        f'euler="0 0 {angle:g}" {words} material="object"/>'
-        for a, b, words in (*boxes, *discs)
-    )

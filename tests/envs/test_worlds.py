@@ -165,34 +165,15 @@ def test_points_of_observations_are_where_mujoco_has_them(task):
 
 S, C = np.sin(0.3), np.cos(0.3)
 TURNED = Rotation.from_rotvec([0.2, -0.3, 0.1]).as_matrix()
+LONG, LEANING = {"length": 1.2}, [0.3, 0.5, 0, 0]
+FALLING, FLYING = [0.2, 0.3, -0.3, 0, 0, 0], [1, 2, 3, *TURNED.ravel(), *[0] * 6]
 SHOWN = [  # a state, and where a body or a geom is then in the scene: place [m], and its z axis
-    (
-        "cart_pendulum",
-        {"length": 1.2},
-        [0.3, 0.5, 0, 0],
-        "rod",
-        [0.5 + 0.6 * S, 0, 0.6 * C],
-        [-S, 0, -C],
-    ),
-    (
-        "cart_swing_up",
-        {"length": 1.2},
-        [0.3, 0.5, 0, 0],
-        "rod",
-        [0.5 - 0.6 * S, 0, 0.6 * C],
-        [S, 0, -C],
-    ),
-    (
-        "cart_double_pendulum",
-        {},
-        [0.2, 0.3, -0.3, 0, 0, 0],
-        "upper",
-        [0.2 + S / 2, 0, C / 2],
-        [-S, 0, C],
-    ),
+    ("cart_pendulum", LONG, LEANING, "rod", [0.5 + 0.6 * S, 0, 0.6 * C], [-S, 0, -C]),
+    ("cart_swing_up", LONG, LEANING, "rod", [0.5 - 0.6 * S, 0, 0.6 * C], [S, 0, -C]),
+    ("cart_double_pendulum", {}, FALLING, "upper", [0.2 + S / 2, 0, C / 2], [-S, 0, C]),
     ("lander", {}, [0.4, 0.3, np.pi / 2, 0, 0, 0], "lander", [0.4, 0, 0.3], [-1, 0, 0]),
     ("two_link", {}, [0.3, 0, 0, 0], "tip", [0.2 * C, 0.2 * S, None], None),
-    ("quadcopter_se3", {}, [1, 2, 3, *TURNED.ravel(), *[0] * 6], "frame", [1, 2, 3], TURNED[:, 2]),
+    ("quadcopter_se3", {}, FLYING, "frame", [1, 2, 3], TURNED[:, 2]),
 ]
 
 
@@ -234,7 +215,7 @@ BOX = (0.5, 0.5, 0, 0.1, 0.1)  # an object of the contact plane without its roun
         ("halfcheetah", {"motors": [1.0, 1.0]}, r"motors=.*: must be 1 or 6 numbers"),
         ("panda_stack", {"low": (0.0,)}, r"low=\[.*must have 3 entries"),
         ("lander", {"turns": 0.7}, r"turns=0.7: must be 0.5 or 1.0"),
-        ("contact_plane", {"objects": (BOX,)}, "each is x, y, angle"),
+        ("contact_plane", {"objects": (BOX,)}, "each is x, y, in the box"),
         ("contact_plane", {"objects": ((*BOX, 0.2),)}, "rounding"),
         ("contact_plane", {"objects": ((1.5, *BOX[1:], 0.1),)}, "in the box"),
         *((task, {"low": (1.0, 0.0)}, "low=") for task in ("contact_plane", "sprk")),
