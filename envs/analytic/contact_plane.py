@@ -25,9 +25,9 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.core.poses import rotated
 from hybrid_rl.envs.analytic.point_mass import DT, move
 from hybrid_rl.envs.mujoco import mjcf, rounded_boxes
-from hybrid_rl.envs.mujoco.kinematics import turned
 from hybrid_rl.fields import Discount, FieldError, NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
 
@@ -135,7 +135,7 @@ class ContactPlane:
     def distance(self, s: Array, pose: Array | None = None) -> Array:
         """Signed distance [] [m] of s [2] to the nearest surface; `pose` [3] is theta."""
         if pose is not None:
-            s = turned(s - pose[:2], -pose[2]) + self.middle
+            s = rotated(s - pose[:2], -pose[2]) + self.middle
         each = [rounded_box(s, *shape) for shape in self.objects]
         return jnp.min(jnp.stack(each)) if each else jnp.float32(jnp.inf)
 
@@ -159,7 +159,7 @@ def rounded_box(
     s: Array, x: float, y: float, angle: float, half_x: float, half_y: float, rounding: float
 ) -> Array:
     """Signed distance [] of s [2] to the surface of a rounded box."""
-    local = turned(s - jnp.array([x, y]), jnp.float32(-angle))
+    local = rotated(s - jnp.array([x, y]), jnp.float32(-angle))
     q = jnp.abs(local) - jnp.array([half_x - rounding, half_y - rounding])
     squares = jnp.sum(jnp.maximum(q, 0) ** 2)
     outside = jnp.where(squares > 0, jnp.sqrt(jnp.where(squares > 0, squares, 1.0)), 0.0)

@@ -169,24 +169,6 @@ def _call(
     return lambda x: jax.lax.platform_dependent(x, cpu=on_cpu, default=on_accelerator)
 
 
-class Call(NamedTuple):
-    """What the name of a foreign call says."""
-
-    asset: str
-    steps: int
-    reads: Names
-    fields: Names
-
-
-def call_of(name: str) -> Call | None:
-    """The call of this name; None for others' calls."""
-    if not name.startswith(NAME):
-        return None
-    asset, _, n, *names = name.removeprefix(NAME).rsplit(":", 4)
-    reads, fields = (tuple(filter(None, each.split(","))) for each in names)
-    return Call(asset, int(n), reads, fields)
-
-
 def step(
     asset: str, threads: int, n: int, x: jax.Array, reads: Names = (), fields: Names = ()
 ) -> jax.Array:

@@ -58,15 +58,6 @@ def test_it_follows_the_equations_of_the_thesis(damping):
     assert np.abs(expected).max() > 5
 
 
-def test_unidirectional_motors():
-    env = Quadcopter("native", bidirectional=False)
-    state = jitted(env, "reset")(jax.random.key(0))
-    for a, u in ((-1.0, 0.0), (0.0, 3.0), (1.0, 6.0)):
-        np.testing.assert_allclose(jitted(env, "step")(state, jnp.full(4, a)).data.ctrl[:4], u)
-    both = jitted(Quadcopter("native"), "step")(state, jnp.full(4, -1.0))
-    np.testing.assert_allclose(both.data.ctrl[:4], -6.0)
-
-
 def test_reward():
     env = Quadcopter("native", task="track")
     state = jitted(env, "reset")(jax.random.key(0))

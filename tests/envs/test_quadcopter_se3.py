@@ -13,10 +13,6 @@ from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
 
 KEY = jax.random.key(5)
 PLAIN = QuadcopterSE3(twist=2.0, away=1.0)
-START = [  # of QuadcopterSE3(twist=2, away=1) at KEY, before it had other options
-    *(-0.83237338, -0.54157352, -0.77530575),
-    *(-0.13448048, 1.68352413, 0.94324064, -1.61967421, 1.65795851, 0.71091700),
-]
 MOTION = [0, 1, 2, *range(12, 18)]  # entries of p, v and w
 
 
@@ -84,16 +80,6 @@ def test_drag_takes_energy_and_rotations_stay_orthogonal() -> None:
     assert energy(path[0]) - energy(path[-1]) > 0.1
     R = follow(QuadcopterSE3(), twisted(), np.full((1200, 4), 0.2))[-1, 3:12].reshape(3, 3)
     np.testing.assert_allclose(R.T @ R, np.eye(3), atol=1e-9)
-
-
-def test_options_that_are_off_change_nothing() -> None:
-    """The start is that of the version without them, and the memory is empty."""
-    off = QuadcopterSE3(twist=2.0, away=1.0, terminate=False, fault_time=0.01)
-    path, same = (fly(env, 5, np.full(4, 0.2)) for env in (PLAIN, off))
-    np.testing.assert_allclose(path.obs[0, MOTION], START, atol=1e-6)
-    np.testing.assert_array_equal(path.obs[0, 3:12], np.eye(3).ravel())
-    np.testing.assert_array_equal(path.obs, same.obs)
-    assert path.info == same.info == {}
 
 
 def test_the_start_is_turned_within_the_angles() -> None:

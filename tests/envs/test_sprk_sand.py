@@ -5,9 +5,9 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from worlds import along, jitted, many
+from worlds import along, jitted
 
-from hybrid_rl.envs.analytic.sprk_sand import CLOCK, DT, Ball, SprkSand
+from hybrid_rl.envs.analytic.sprk_sand import DT, Ball, SprkSand
 
 KEY = jax.random.key(3)
 EXACT = SprkSand(learn=30, sensor_noise=0.0)
@@ -80,15 +80,6 @@ def test_noise_is_that_of_a_camera() -> None:
     np.testing.assert_allclose(path.obs[1:, 2:4], np.diff(path.obs[:, :2], axis=0) / DT, atol=1e-4)
     np.testing.assert_array_equal(path.obs[:, 4:], exact.obs[:, 4:])
     np.testing.assert_array_equal(path.obs[0, 2:4], 0)
-
-
-def test_the_start_does_not_depend_on_the_noise() -> None:
-    keys = jax.random.split(KEY, 300)
-    p = np.asarray(many(EXACT, "reset")(keys).data.p)
-    np.testing.assert_array_equal(p, many(NOISY, "reset")(keys).data.p)
-    away = p - [1.62, 0.85]
-    assert 0.09 < np.abs(away).max() <= 0.1 + 1e-6
-    assert SprkSand(sensor_noise=0.0).reset(KEY).info.keys() == {CLOCK}
 
 
 def test_reward_and_tracking_error() -> None:
