@@ -49,9 +49,8 @@ class Copies:
     @cached_property
     def _vector(self) -> Any:
         one = partial(self.env.one, self.render_mode)
-        makers = [one if self.repeat == 1 else partial(Repeated, one, self.repeat)] * len(
-            self.seeds
-        )
+        one = one if self.repeat == 1 else partial(Repeated, one, self.repeat)
+        makers = [one for _ in self.seeds]
         if self._apart:
             return AsyncVectorEnv(makers, context="spawn", autoreset_mode=AutoresetMode.DISABLED)
         return SyncVectorEnv(makers, copy=False, autoreset_mode=AutoresetMode.DISABLED)
