@@ -31,7 +31,7 @@ from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.body import Body
 from hybrid_rl.envs.mujoco.kinematics import inverse, quat_multiply, rotate
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
-from hybrid_rl.fields import FieldError, NotNegative, part
+from hybrid_rl.fields import NotNegative, part
 from hybrid_rl.types import EnvState, Spec
 
 ASSET = "quadcopter.xml"
@@ -53,13 +53,6 @@ class Quadcopter(Body):
     target_speed: NotNegative = 0.0  # [m/s] largest in each direction; track only
     wind: float = 0.0  # [m/s^2] acceleration along the world's x axis
     asset: str = ASSET  # another file needs the same actuators
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        try:
-            mjcf.load(self.asset)
-        except ValueError as error:
-            raise FieldError(self, "asset", str(error)) from error
 
     @property
     def spec(self) -> Spec:

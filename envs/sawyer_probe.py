@@ -72,8 +72,7 @@ class SawyerProbe:
     spec = Spec(obs=4, act=2, dt=DT)
 
     def __post_init__(self) -> None:
-        for name in ("objects", "low", "high", "theta"):
-            object.__setattr__(self, name, getattr(self._plane, name))
+        _ = self._plane  # whose fields it checks
 
     @cached_property
     def _plane(self) -> ContactPlane:

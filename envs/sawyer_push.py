@@ -29,7 +29,8 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs.mujoco import kinematics, mjcf
+from hybrid_rl.core.poses import rotated
+from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.kinematics import Chain, damped_inverse, rotate_towards, stay_within
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, Simulator
 from hybrid_rl.fields import Discount, NotNegative, Positive, part
@@ -155,17 +156,15 @@ class SawyerPush:
         """
         groups = [self._at(name) for name in ("command", "motion") if name in self.extra]
         for at in (0, 2, *groups):
-            obs = obs.at[at : at + 2].set(kinematics.turned(obs[at : at + 2], angle))
+            obs = obs.at[at : at + 2].set(rotated(obs[at : at + 2], angle))
         return obs
 
     def turned_action(self, action: Array, angle: Array) -> Array:
         """The action [2] turned by `angle` [rad]."""
-        return kinematics.turned(action, angle)
+        return rotated(action, angle)
 
     def _at(self, name: str) -> int:
         """Where the group `name` begins in the observation."""
-        if name not in self.extra:
-            raise ValueError(f"env.extra={list(self.extra)}: must contain {name} for a heading")
         before = self.extra[: self.extra.index(name)]
         return 4 + sum(EXTRA[other] for other in before)
 

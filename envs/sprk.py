@@ -28,10 +28,10 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.core.poses import rotated
 from hybrid_rl.envs.analytic.contact_plane import THREE, ContactPlane
 from hybrid_rl.envs.analytic.point_mass import DT, move
 from hybrid_rl.envs.mujoco import mjcf, rounded_boxes
-from hybrid_rl.envs.mujoco.kinematics import turned
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, Simulator
 from hybrid_rl.fields import Discount, NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
@@ -72,8 +72,7 @@ class Sprk:
     spec = Spec(obs=4, act=2, dt=DT)
 
     def __post_init__(self) -> None:
-        for name in PLANE:
-            object.__setattr__(self, name, getattr(self._plane, name))
+        _ = self._plane  # whose fields it checks
 
     @cached_property
     def _plane(self) -> ContactPlane:
@@ -107,7 +106,7 @@ class Sprk:
     def reset(self, key: Array) -> EnvState:
         """A random position and pose, those of `contact_plane` for the same key."""
         x, u, pose, noise = self._plane.reset(key).data
-        p = turned(x[:2] - pose[:2], -pose[2]) + self._plane.middle
+        p = rotated(x[:2] - pose[:2], -pose[2]) + self._plane.middle
         data = self._at(p, jnp.zeros(2))
         info = {"pose": pose, "action": u, "noise": noise}
         return self._state(data, jnp.zeros(()), jnp.zeros(()), info)
@@ -123,7 +122,7 @@ class Sprk:
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state after one decision. action: [2] in [-1, 1]."""
         u, body, info = jnp.clip(action, -1.0, 1.0), self._body, state.info
-        local = turned(u, -info["pose"][2])
+        local = rotated(u, -info["pose"][2])
 
         def reading(data: PhysicsState, _: None) -> tuple[PhysicsState, tuple[Array, Array]]:
             data = body.step(data, local, STEPS)
@@ -152,8 +151,8 @@ class Sprk:
         self, data: PhysicsState, touch: Array, measured: Array, info: dict[str, Array]
     ) -> EnvState:
         pose = info["pose"]
-        p = turned(data.qpos[:2] - self._plane.middle, pose[2]) + pose[:2]
-        obs = jnp.concatenate([p, turned(data.qvel[:2], pose[2])])
+        p = rotated(data.qpos[:2] - self._plane.middle, pose[2]) + pose[:2]
+        obs = jnp.concatenate([p, rotated(data.qvel[:2], pose[2])])
         x, y, angle = pose
         metrics = {"touch": touch, "pose_x": x, "pose_y": y, "pose_angle": angle}
         return EnvState(data, obs, measured, metrics=metrics, info=info)

@@ -70,7 +70,6 @@ def main() -> None:
 
     out = _out(given, named)
     offscreen.backend()  # raises before minutes of work
-    offscreen.check_size(given["width"], given["height"])
     seed, number, steps = given["seed"], given["episode"], given["episode_steps"]
     if given["task"]:
         world, controller, params = scripted_expert(given, changes)

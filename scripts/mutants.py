@@ -59,7 +59,7 @@ MUTANTS = {
         "tests/test_browser.py",
     ),
     "discount counted twice": Mutant(
-        "hybrid_rl/core/soft_return.py",
+        "hybrid_rl/core/returns.py",
         "y = r + discount * continues * value",
         "y = r + discount**2 * continues * value",
         "tests/core",

@@ -118,11 +118,11 @@ def test_a_run_names_the_shortest_key_of_the_field():
         ("policy_learner.updates=1e-30", "or 1 / a whole number, of at most 1073741824"),
         ("policy_learner.tau=null", "policy_learner.tau=null: must be a number"),
         ("replay.demonstrations=[]", "replay.demonstrations=[]: must be a part, or null"),
-        ("model.model.inputs=[3]", "model.inputs=[3]: the observation of this task has entries 0"),
+        ("model.model.inputs=[3]", "model.inputs=[3]: must be some of the entries 0 to 2"),
         ("algo=kle3 equilibrium.free=[9]", "equilibrium.free=[9]: must be some of 0 to 1, not all"),
         ("task=two_link algo=kle3_bayesopt", "belief.size=1: must be 2, as of the domain"),
         ("algo=sac learner@policy_learner=flash_sac", "EnsembleQ has no in_batch, which FlashSAC"),
-        ("task=quadcopter env.asset=x", "env.asset=x: no model "),
+        ("task=quadcopter env.asset=x", "x: no such file; assets are "),
         ("algo=analytic model=sines", "model=Gaussian: AnalyticGradient learns with it, and no le"),
     ],
 )

@@ -158,20 +158,6 @@ def test_a_world_that_cannot_be_drawn_is_one_line(trained, monkeypatch, capsys, 
     assert "has no `scene` and no `pose`: the world cannot be drawn; write `scene(self)`" in printed
 
 
-def test_a_picture_is_no_larger_than_the_framebuffer(trained, monkeypatch, capsys, can_draw):
-    """OpenGL has a longest side."""
-    if not can_draw:
-        return
-    assert call(monkeypatch, "run=x", "width=1000000") == 2
-    printed = capsys.readouterr().err
-    assert printed.count("\n") == 1
-    most = int(printed.split("must be at most ")[1].split(",")[0])
-    assert printed.startswith("hybrid_rl: width=1000000: ")
-    offscreen.check_size(most, 2)
-    with pytest.raises(ValueError, match=f"height={most + 2}: must be at most {most}"):
-        offscreen.check_size(2, most + 2)
-
-
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [

@@ -18,7 +18,6 @@ Source: Brax's documentation, `brax.envs.base.Env`, `brax.envs.wrappers.training
 
 from typing import Any
 
-import jax
 import jax.numpy as jnp
 from brax.envs import base
 from jax import Array
@@ -34,13 +33,7 @@ class BraxEnv(base.Env):
         self.env = env
 
     def reset(self, rng: Array) -> base.State:
-        """A random initial state; rng: a key [2] of `jax.random.PRNGKey`.
-
-        Raises:
-            TypeError: for a key of `jax.random.key`, which Brax's wrappers cannot batch.
-        """
-        if jnp.issubdtype(rng.dtype, jax.dtypes.prng_key):
-            raise TypeError("Brax takes keys of jax.random.PRNGKey, not of jax.random.key")
+        """A random initial state; rng: a key [2] of `jax.random.PRNGKey`."""
         first = self.env.reset(rng)
         pipeline_state: PyTree = first.data, first.info
         done = jnp.float32(0.0)

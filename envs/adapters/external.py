@@ -11,25 +11,21 @@ their model train on it; those that plan on the true dynamics do not.
 Source: Gymnasium's documentation, "Env", "AutoresetMode".
 """
 
-import os
-import re
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import replace
 from functools import cache
 from typing import Any, NamedTuple, NoReturn
 
 import gymnasium
 import numpy as np
 from gymnasium.spaces import Box, Dict, Space, flatdim, flatten
-from gymnasium.wrappers import FlattenObservation, TimeLimit
+from gymnasium.wrappers import FlattenObservation
 from jax import Array
 
-from hybrid_rl.envs.adapters.copies import PICTURE, Copies
+from hybrid_rl.envs.adapters.copies import Copies
 from hybrid_rl.envs.adapters.unstepped import Made, import_named, registered
-from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.envs.trial import check
-from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame
+from hybrid_rl.errors import FAULTS, UsageError, blame
 from hybrid_rl.fields import Positive, part
 from hybrid_rl.protocols.contract import of_user
 from hybrid_rl.types import EnvState, Spec
@@ -37,23 +33,20 @@ from hybrid_rl.types import EnvState, Spec
 ACTIONS = "they must be a Box with finite bounds, of one number or more"
 FORMS = "they must be numbers in a form that Gymnasium flattens: Box, Discrete, Dict, Tuple"
 DT = 'add env.dt=0.05, the seconds of a decision, or metadata = {"render_fps": 20} to its class'
-DRAWS = re.compile("GLContext|MUJOCO_GL")  # in errors of MuJoCo's Renderer and of Gymnasium's
 
 
 @part
 class External(Made):
-    """An environment that Gymnasium makes; to read its spaces one copy is made, and steps."""
+    """An environment that Gymnasium makes; to read its spaces one copy is made, and reset."""
 
     id: str = ""  # in place of `make`
     dt: Positive | None = None  # [s] between decisions; None: what the environment says
     processes: bool = False  # one for each copy; pays where a step takes 1 ms or more
-    timeout_s: Positive | None = None  # [s] for a step, with processes; then the run ends
+    timeout_s: Positive | None = None  # [s] for a step, in processes; then the run ends
 
     def __post_init__(self) -> None:
         if not (self.id or self.make):
             raise UsageError("env.id: give an id of Gymnasium, or env.make=MODULE:CLASS")
-        if self.timeout_s is not None and not self.processes:
-            raise UsageError(f"env.timeout_s={self.timeout_s}: goes with env.processes=true")
         super().__post_init__()
         _ = self.known
 
@@ -98,24 +91,15 @@ class External(Made):
 
     def one(self, render_mode: str | None = None) -> gymnasium.Env:
         """A copy of the environment, with flat observations and without a time limit of its own."""
-        drawn = {"render_mode": render_mode} if render_mode else {}
-        given: dict[str, Any] = {**(self.kwargs or {}), **drawn}
+        given: dict[str, Any] = {**(self.kwargs or {})}
+        if render_mode is not None:
+            given["render_mode"] = render_mode
         if not self.make:
             options: dict[str, Any] = {"disable_env_checker": True, "max_episode_steps": -1}
-            env = gymnasium.make(registered(self.id), **options, **given)
-        else:
-            try:
-                env = import_named(self.make)(**given)
-            except TypeError as error:
-                if render_mode is None:  # as when its spaces were read
-                    raise
-                raise WorldError(f"env.make={self.name}: {PICTURE}") from error
-            if not isinstance(env, gymnasium.Env):
-                raise UsageError(
-                    f"env.make={self.name}: returns {env!r}, which is no gymnasium.Env"
-                )
-        if isinstance(env.observation_space, Box) and len(env.observation_space.shape) == 1:
-            return env
+            return FlattenObservation(gymnasium.make(registered(self.id), **options, **given))
+        env = import_named(self.make)(**given)
+        if not isinstance(env, gymnasium.Env):
+            raise UsageError(f"env.make={self.name}: returns {env!r}, which is no gymnasium.Env")
         return FlattenObservation(env)
 
     def copies(
@@ -136,40 +120,27 @@ class Known(NamedTuple):
 
 @cache
 def _known(env: External) -> Known:
-    """What one copy declares; if it fails as it draws, which commands disable, it may."""
-    try:
-        return _read(env)
-    except UsageError as error:
-        if os.environ.get("MUJOCO_GL") != "disable" or not DRAWS.search(str(error)):
-            raise
-        try:
-            offscreen.lend()
-        except offscreen.NoGraphicsError as why:
-            raise UsageError(f"{env.name}: {why}") from error
-        return _read(env)
-
-
-def _read(env: External) -> Known:
+    """What one copy declares."""
     try:
         one = env.one()
         one.reset(seed=0)  # some declare their spaces there
-        one.action_space.seed(0)
-        one.step(one.action_space.sample())
     except UsageError:
         raise
     except FAULTS as error:
         key = "make" if env.make else "id"
         raise UsageError(f"env.{key}={env.name}: {blame(error)}") from error
-    space, obs = one.action_space, one.observation_space
+    space, obs, seen = one.action_space, one.observation_space, one.env.observation_space
     if not (isinstance(space, Box) and flatdim(space) and space.is_bounded()):
         raise UsageError(f"{env.name}: has actions {space}; {ACTIONS}")
     if not (isinstance(obs, Box) and np.prod(obs.shape) > 0):
         raise UsageError(f"{env.name}: has observations {obs}; {FORMS}")
     dt = env.dt or _time_step(env.name, one)
-    found = None if env.make or one.spec is None else gymnasium.spec(one.spec.id)
-    limit = found.max_episode_steps if found else _limit(one)  # of the newest version of an env.id
+    limit = None
+    if not env.make and one.spec is not None:
+        limit = gymnasium.spec(one.spec.id).max_episode_steps  # of the newest version of an env.id
+    elif one.has_wrapper_attr("_max_episode_steps"):
+        limit = one.get_wrapper_attr("_max_episode_steps")  # of a TimeLimit
     one.close()
-    seen = one.env.observation_space if isinstance(one, FlattenObservation) else obs
     sizes = int(np.prod(obs.shape)), int(np.prod(space.shape))
     return Known(Spec(*sizes, dt), limit, space, seen)
 
@@ -183,20 +154,7 @@ def _time_step(name: str, one: gymnasium.Env) -> float:
     raise UsageError(f"{name}: does not say its time step; {DT}")
 
 
-def _limit(env: gymnasium.Env) -> int | None:
-    """The steps of the first TimeLimit among an environment's wrappers; None: there is none."""
-    while isinstance(env, gymnasium.Wrapper):
-        if isinstance(env, TimeLimit):
-            return env._max_episode_steps
-        env = env.env
-    return None
-
-
-def check_world(env: Any) -> tuple[str, ...]:
-    """Notes about a world of the user's; in one of Gymnasium's, a decision is tried."""
-    if isinstance(env, External):
-        copy = replace(env, processes=False, timeout_s=None).copies([0], steps=2)
-        copy.reset()
-        copy.step(np.zeros((1, env.spec.act)))
-        copy.close()
-    return check(env) if of_user(env) else ()
+def check_world(env: Any) -> None:
+    """Check a world of the user's."""
+    if of_user(env):
+        check(env)

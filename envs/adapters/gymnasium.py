@@ -23,7 +23,6 @@ import gymnasium
 import jax
 import jax.numpy as jnp
 import numpy as np
-from gymnasium.error import ResetNeeded
 from gymnasium.spaces import Box
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
@@ -64,14 +63,6 @@ def _spaces(env: Env) -> tuple[Box, Box]:
     )
 
 
-def _checked(action: Any, shape: tuple[int, ...]) -> np.ndarray:
-    """`action` as float32."""
-    action = np.asarray(action, np.float32)
-    if action.shape != shape:
-        raise ValueError(f"action has the shape {action.shape}; {shape} is needed")
-    return action
-
-
 @cache
 def _programs(env: Env) -> tuple[EnvState, Callable, Callable, Callable]:
     """Shapes of a state; reset and step on packed states, and `unpack`, for all equal `env`."""
@@ -96,17 +87,13 @@ class GymnasiumEnv(gymnasium.Env):
         self.metadata = {**self.metadata, "render_fps": round(1 / env.spec.dt)}
         self.observation_space, self.action_space = _spaces(env)
         self._like, self._reset, self._step, self._unpacked = _programs(env)
-        self._packed: Packed | None = None  # until the first reset
+        self._packed: Packed  # from the first reset on
         self._canvas: Canvas | None = None
 
     @property
     def state(self) -> EnvState:
-        """The state, as `env.step` takes it.
-
-        Raises:
-            ResetNeeded: before the first `reset`.
-        """
-        return self._unpacked(_after_reset(self._packed, "state"))
+        """The state, as `env.step` takes it."""
+        return self._unpacked(self._packed)
 
     def _read(self, packed: Packed) -> tuple[np.ndarray, float, bool, Info]:
         """Observation [o], reward, terminated, metrics by name."""
@@ -129,14 +116,9 @@ class GymnasiumEnv(gymnasium.Env):
         return obs, info
 
     def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, Info]:
-        """Observation [o], reward, terminated, truncated, metrics after action [m].
-
-        Raises:
-            ResetNeeded: before the first `reset`.
-            ValueError: for an action of another shape.
-        """
-        packed = _after_reset(self._packed, "step")
-        self._packed = packed = self._step(packed, _checked(action, (self._spec.act,)))
+        """Observation [o], reward, terminated, truncated, metrics after action [m]."""
+        action = np.asarray(action, np.float32)
+        self._packed = packed = self._step(self._packed, action)
         obs, reward, terminated, info = self._read(packed)
         self._count += 1
         truncated = 0 < self.steps <= self._count and not terminated
@@ -147,10 +129,8 @@ class GymnasiumEnv(gymnasium.Env):
 
         Raises:
             NoGraphicsError: if neither EGL nor OSMesa works.
-            ResetNeeded: before the first `reset`.
             ValueError: for an environment that cannot be drawn: `scenery.scene_of` says why.
         """
-        _after_reset(self._packed, "render")
         if self._canvas is None:
             self._canvas = Canvas(scene_of(self.env), smooth=False)
         return self._canvas.draw(np.asarray(pose_of(self.env)(self.state)))
@@ -178,7 +158,7 @@ class GymnasiumVectorEnv(VectorEnv):
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
         self._reset, self._step = _vector_programs(env, self.steps)
-        self._carry: tuple[EnvState, Array, Array] | None = None  # states, keys, steps so far
+        self._carry: tuple[EnvState, Array, Array]  # states, keys, steps so far
 
     def reset(
         self, *, seed: int | Sequence[int] | None = None, options: dict[str, Any] | None = None
@@ -200,15 +180,9 @@ class GymnasiumVectorEnv(VectorEnv):
     def step(
         self, actions: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, Info]:
-        """Observations [E, o], rewards, terminations, truncations [E], infos, after [E, m].
-
-        Raises:
-            ResetNeeded: before the first `reset`.
-            ValueError: for actions of another shape.
-        """
-        carry, shape = _after_reset(self._carry, "step"), (self.num_envs, self.env.spec.act)
-        carry, last, truncated = self._step(carry, _checked(actions, shape))
-        self._carry, state = carry, carry[0]
+        """Observations [E, o], rewards, terminations, truncations [E], infos, after [E, m]."""
+        self._carry, last, truncated = self._step(self._carry, np.asarray(actions, np.float32))
+        state = self._carry[0]
         terminated, truncated = np.array(last.terminated), np.array(truncated)
         done = terminated | truncated
         infos = _infos(state, np.ones(self.num_envs, bool))
@@ -222,13 +196,6 @@ class GymnasiumVectorEnv(VectorEnv):
 def _vector_programs(env: Env, steps: int) -> tuple[Callable, Callable]:
     """Reset and step for all equal `env`."""
     return jax.jit(jax.vmap(env.reset)), jax.jit(partial(_autoreset_step, env, steps))
-
-
-def _after_reset(state: Any, what: str) -> Any:
-    """`state`, or ResetNeeded if it is None."""
-    if state is None:
-        raise ResetNeeded(f"{what}: call reset() first")
-    return state
 
 
 def _infos(state: EnvState, known: np.ndarray) -> Info:

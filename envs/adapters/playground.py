@@ -22,7 +22,7 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.envs.adapters.unstepped import Items
-from hybrid_rl.errors import UsageError, install, one_line
+from hybrid_rl.errors import UsageError, install
 from hybrid_rl.types import EnvState, Spec
 
 
@@ -80,10 +80,7 @@ def _loaded(env: Playground) -> Any:
     except ImportError as error:
         line = f"task=playground needs MuJoCo Playground ({error}); {install('bench')}"
         raise UsageError(line) from error
-    try:
-        return registry.load(env.name, config_overrides=dict(env.config or {}))
-    except Exception as error:  # such as a setting that it does not have
-        raise UsageError(f"env.name={env.name}: cannot be loaded ({one_line(error)})") from error
+    return registry.load(env.name, config_overrides=dict(env.config or {}))
 
 
 @cache

@@ -37,8 +37,6 @@ class Made(Unstepped):
     kwargs: Mapping[str, Any] | None = None  # of it
 
     def __post_init__(self) -> None:
-        if not isinstance(self.kwargs or {}, Mapping):
-            raise UsageError(f"env.kwargs={self.kwargs}: must be {{KEY: VALUE}}")
         object.__setattr__(self, "kwargs", Items(self.kwargs or {}))
 
     @property

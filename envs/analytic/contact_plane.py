@@ -19,24 +19,21 @@ Source: thesis sections 5.3 and 5.4: a second-order point among fixed objects, f
 quick movements. Objects, their sizes, a, b and the error rates are our choice.
 """
 
-import math
 from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
-import numpy as np
 from jax import Array
 
-from hybrid_rl.envs.analytic import arrangements
+from hybrid_rl.core.poses import rotated
 from hybrid_rl.envs.analytic.point_mass import DT, move
-from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.envs.mujoco.kinematics import turned
+from hybrid_rl.envs.mujoco import mjcf, rounded_boxes
 from hybrid_rl.fields import Discount, FieldError, NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
 
+HALF = 0.03  # [m] half height of the objects, as they are drawn
 SUBSTEPS, CORNER = 10, 2  # steps of a decision; projections of a step, for corners of two objects
 STARTS, CLEAR = 64, 0.02  # candidates for the start; from a surface, in the box's shorter side
-FREE = 0.2  # share of the box that must be free: all candidates miss it once in a million
 THREE = (  # a disc, a box and a bar, without symmetry
     (0.25, 0.72, 0.0, 0.10, 0.10, 0.10),
     (0.72, 0.68, 0.4, 0.09, 0.06, 0.01),
@@ -75,18 +72,6 @@ class ContactPlane:
             raise FieldError(self, "low", "needs two numbers below high")
         for shape in self.objects:
             _check(shape, self.low, self.high)
-        if self._free() < FREE:
-            words = f"{FREE:.0%} of the box must be free for a ball of radius {self.radius}"
-            raise FieldError(self, "objects", f"leave no room to start; {words}")
-
-    def _free(self) -> float:
-        """Share of the box in which the ball can start, with the objects as listed."""
-        low, high = np.array(self.low), np.array(self.high)
-        sides = [np.linspace(a, b, 41) for a, b in zip(low, high, strict=True)]
-        points = np.stack(np.meshgrid(*sides), -1).reshape(-1, 2)
-        each = [arrangements.distance(points, shape) for shape in self.objects]
-        gap = self.radius + CLEAR * float(np.min(high - low))
-        return float((np.min(each, 0) > gap).mean()) if each else 1.0
 
     @property
     def middle(self) -> Array:
@@ -150,14 +135,15 @@ class ContactPlane:
     def distance(self, s: Array, pose: Array | None = None) -> Array:
         """Signed distance [] [m] of s [2] to the nearest surface; `pose` [3] is theta."""
         if pose is not None:
-            s = turned(s - pose[:2], -pose[2]) + self.middle
+            s = rotated(s - pose[:2], -pose[2]) + self.middle
         each = [rounded_box(s, *shape) for shape in self.objects]
         return jnp.min(jnp.stack(each)) if each else jnp.float32(jnp.inf)
 
     def scene(self) -> str:
         """MJCF text of the scene for rendering."""
         x, y = ((a + b) / 2 for a, b in zip(self.low, self.high, strict=True))
-        geoms = "".join(_geom(shape, x, y) for shape in self.objects)
+        about = tuple((shape[0] - x, shape[1] - y, *shape[2:]) for shape in self.objects)
+        geoms = rounded_boxes.drawn(about, HALF)
         text = mjcf.text("contact_plane.xml").replace('<geom name="object" size="1"/>', geoms)
         edges = zip(("WEST", "SOUTH", "EAST", "NORTH"), (*self.low, *self.high), strict=True)
         for name, value in edges:
@@ -173,7 +159,7 @@ def rounded_box(
     s: Array, x: float, y: float, angle: float, half_x: float, half_y: float, rounding: float
 ) -> Array:
     """Signed distance [] of s [2] to the surface of a rounded box."""
-    local = turned(s - jnp.array([x, y]), jnp.float32(-angle))
+    local = rotated(s - jnp.array([x, y]), jnp.float32(-angle))
     q = jnp.abs(local) - jnp.array([half_x - rounding, half_y - rounding])
     squares = jnp.sum(jnp.maximum(q, 0) ** 2)
     outside = jnp.where(squares > 0, jnp.sqrt(jnp.where(squares > 0, squares, 1.0)), 0.0)
@@ -187,32 +173,9 @@ def _below(a: tuple[float, ...], b: tuple[float, ...]) -> bool:
 
 def _check(shape: tuple[float, ...], low: tuple[float, ...], high: tuple[float, ...]) -> None:
     """Raise ValueError unless `shape` is a rounded box whose middle lies between low and high."""
-    if len(shape) != 6 or not 0 < shape[5] <= min(shape[3:5]):
+    sound = len(shape) == 6 and 0 < shape[5] <= min(shape[3:5])
+    if not (sound and _below(low, shape[:2]) and _below(shape[:2], high)):
         raise ValueError(
-            f"objects={list(shape)}: each is x, y, angle, half width, half height, and a rounding "
-            "above 0 that is at most the smaller half"
+            f"objects={list(shape)}: each is x, y, in the box, angle, half width, half height, and "
+            "a rounding above 0 that is at most the smaller half"
         )
-    if not (_below(low, shape[:2]) and _below(shape[:2], high)):
-        raise ValueError(f"objects={list(shape)}: its middle lies outside of the box")
-
-
-def _geom(shape: tuple[float, ...], x: float, y: float) -> str:
-    """MJCF of a rounded box, 6 cm high, relative to the middle (x, y) of the plane."""
-    cx, cy, angle, half_x, half_y, rounding = shape
-    parts = [(half_x, half_y - rounding), (half_x - rounding, half_y)]
-    heights = 0.03, 0.0297, 0.0294  # different, since coinciding faces flicker
-    boxes = [
-        (0.0, 0.0, f'type="box" size="{a:g} {b:g} {h:g}"')
-        for (a, b), h in zip(parts, heights, strict=False)
-        if min(a, b) > 0
-    ]
-    corners = {(i * (half_x - rounding), j * (half_y - rounding)) for i in (-1, 1) for j in (-1, 1)}
-    discs = [
-        (a, b, f'type="cylinder" size="{rounding:g} {heights[2]:g}"') for a, b in sorted(corners)
-    ]
-    cos, sin = math.cos(angle), math.sin(angle)
-    return "".join(
-        f'<geom pos="{cx - x + cos * a - sin * b:g} {cy - y + sin * a + cos * b:g} 0.03" '
-        f'euler="0 0 {angle:g}" {words} material="object"/>'
-        for a, b, words in (*boxes, *discs)
-    )

@@ -25,7 +25,7 @@ from hybrid_rl.envs import sensor_noise
 from hybrid_rl.envs.analytic.integrate import rk4
 from hybrid_rl.envs.analytic.state import fully_observed
 from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.fields import FieldError, Fraction, NotNegative, part
+from hybrid_rl.fields import Fraction, NotNegative, part
 from hybrid_rl.types import EnvState, Spec
 
 DT, THRUST, G, MASS = 0.005, 6.0, 9.81, 0.6  # [s], u at a = 1, [m/s^2], [kg]
@@ -50,10 +50,6 @@ class QuadcopterSE3:
     fault_time: NotNegative = 2.0  # [s] of an episode at which wind and loss begin
 
     spec = Spec(obs=18, act=4, dt=DT)
-
-    def __post_init__(self) -> None:
-        if len(self.sensor_noise) not in (1, 18):
-            raise FieldError(self, "sensor_noise", "must be 1 or 18 numbers")
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""

@@ -18,7 +18,7 @@ from jax import Array
 from hybrid_rl.envs import sawyer_torque
 from hybrid_rl.envs.mujoco import inverse_dynamics
 from hybrid_rl.envs.sawyer_torque import DT, LIMITS, SawyerTorque
-from hybrid_rl.fields import FieldError, NotNegative, Positive, part
+from hybrid_rl.fields import NotNegative, Positive, part
 from hybrid_rl.types import Params, Spec
 
 
@@ -64,9 +64,6 @@ class JointPD:
 
     def __post_init__(self) -> None:
         _check(self.world)
-        for name in ("stiffness", "damping"):
-            if len(getattr(self, name)) != 7:
-                raise FieldError(self, name, "must have 7 entries")
 
     def init(self, spec: Spec) -> Array:
         """z [7] = 0."""

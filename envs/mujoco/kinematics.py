@@ -32,12 +32,6 @@ def quat_multiply(r: Array, s: Array) -> Array:
     return jnp.concatenate((w[None], r[0] * s[1:] + s[0] * r[1:] + jnp.cross(r[1:], s[1:])))
 
 
-def turned(s: Array, angle: Array) -> Array:
-    """s [2] rotated by an angle [] [rad]."""
-    sin, cos = jnp.sin(angle), jnp.cos(angle)
-    return jnp.stack([cos * s[0] - sin * s[1], sin * s[0] + cos * s[1]])
-
-
 def rotate(r: Array, v: Array) -> Array:
     """The vector v [3] rotated by r [4]."""
     t = 2 * jnp.cross(r[1:], v)

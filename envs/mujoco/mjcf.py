@@ -36,10 +36,8 @@ def path(asset: str) -> Path:
     """The file of `asset`: a name in `assets`, or an absolute path."""
     file = FOLDER / asset
     if not file.is_file():
-        if Path(asset).is_absolute():
-            raise ValueError(f"{asset}: no such file")
         known = ", ".join(sorted(p.name for p in FOLDER.glob("*.xml")))
-        raise ValueError(f"no model {str(file)!r}; assets are {known}")
+        raise ValueError(f"{file}: no such file; assets are {known}")
     return file
 
 

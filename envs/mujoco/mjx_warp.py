@@ -126,8 +126,8 @@ def _step(
 
 def _read(data: mjx.Data, name: str) -> jax.Array:
     """The field `name` of MjData, of which some belong to the implementation."""
-    own = data._impl if hasattr(data._impl, name) else data
-    return getattr(own, name)
+    own = getattr(data._impl, name, None)
+    return getattr(data, name) if own is None else own
 
 
 def _sense(model: mjx.Model, data: mjx.Data) -> mjx.Data:

@@ -50,9 +50,8 @@ class _Pool(NamedTuple):
 
 def cores() -> int:
     """Number of processors that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
+    affinity = getattr(os, "sched_getaffinity", None)  # not on every system
+    return len(affinity(0)) if affinity else os.cpu_count() or 1
 
 
 def _warn(text: str) -> None:
@@ -167,24 +166,6 @@ def _call(
         return jax.ffi.ffi_call(name, out, vmap_method="broadcast_all")(x)
 
     return lambda x: jax.lax.platform_dependent(x, cpu=on_cpu, default=on_accelerator)
-
-
-class Call(NamedTuple):
-    """What the name of a foreign call says."""
-
-    asset: str
-    steps: int
-    reads: Names
-    fields: Names
-
-
-def call_of(name: str) -> Call | None:
-    """The call of this name; None for others' calls."""
-    if not name.startswith(NAME):
-        return None
-    asset, _, n, *names = name.removeprefix(NAME).rsplit(":", 4)
-    reads, fields = (tuple(filter(None, each.split(","))) for each in names)
-    return Call(asset, int(n), reads, fields)
 
 
 def step(

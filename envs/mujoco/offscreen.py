@@ -21,12 +21,10 @@ import mujoco
 import numpy as np
 
 from hybrid_rl.envs.mujoco import scenery
-from hybrid_rl.errors import UsageError
 
 BACKENDS = ("egl", "osmesa")
 SHADOWS = 1024  # [pixels] of the shadow map; 4096 takes three times as long in software
 RASTERISERS = ("llvmpipe", "softpipe", "swrast", "software")  # Mesa's drivers without a card
-GUARANTEED = 1024  # [pixels] per side in any OpenGL; larger sizes are tested first
 TRIAL = """
 import mujoco
 from mujoco.{backend} import GLContext
@@ -34,12 +32,10 @@ window = GLContext(8, 8)
 window.make_current()
 try:
     from OpenGL import GL
-    print(int(GL.glGetIntegerv(GL.GL_MAX_RENDERBUFFER_SIZE)))
     print(GL.glGetString(GL.GL_RENDERER).decode(), flush=True)
 except ImportError:
     pass
 model = mujoco.MjModel.from_xml_string("<mujoco/>")
-model.vis.global_.offwidth, model.vis.global_.offheight = {width}, {height}
 context = mujoco.MjrContext(model, 150)
 context.free()
 window.free()
@@ -76,30 +72,13 @@ def chosen() -> tuple[str, str]:
     requested = os.environ.get("MUJOCO_GL", "").strip().lower()
     tried = (requested,) if requested in BACKENDS else BACKENDS
     for name in tried:
-        done = _trial(name, 8, 8)
+        done = _trial(name)
         if done.returncode == 0:
             return name, done.stdout
     raise NoGraphicsError(
         f"cannot draw without a display: {' and '.join(tried)} failed; "
         "install libegl1 or libosmesa6 (Debian: apt-get install libegl1 libosmesa6)"
     )
-
-
-def check_size(width: int, height: int) -> None:
-    """Raise UsageError for an image larger than the backend's largest framebuffer.
-
-    width, height: [pixels].
-    """
-    if max(width, height) <= GUARANTEED:
-        return
-    done = _trial(backend(), width, height)
-    if done.returncode == 0:
-        return
-    most = int(done.stdout.split()[0]) if done.stdout else max(width, height)
-    for name, value in (("width", width), ("height", height)):
-        if value > most:
-            raise UsageError(f"{name}={value}: must be at most {most}, the limit of OpenGL here")
-    raise ValueError(f"width={width}, height={height}: too large for OpenGL here")
 
 
 def lend() -> None:
@@ -115,11 +94,10 @@ def lend() -> None:
         mujoco.GLContext = importlib.reload(gl_context).GLContext
 
 
-def _trial(name: str, width: int, height: int) -> Any:
-    """The finished process of a trial with one backend; it prints the largest side [pixels]."""
+def _trial(name: str) -> Any:
+    """The finished process of a trial with one backend."""
     clean = {key: value for key, value in os.environ.items() if key != "PYOPENGL_PLATFORM"}
-    code = TRIAL.format(backend=name, width=width, height=height)
-    run = [sys.executable, "-c", code]
+    run = [sys.executable, "-c", TRIAL.format(backend=name)]
     return subprocess.run(run, env={**clean, "MUJOCO_GL": name}, capture_output=True, text=True)
 
 

@@ -67,13 +67,6 @@ class PhysicsState:
     asset: str = struct.field(pytree_node=False)  # the model whose state it is
     fields: dict[str, Array] = struct.field(default_factory=dict)  # of MjModel, this episode's own
 
-    def __getattr__(self, name: str) -> Any:
-        """No field of MjData but these is kept: say how such a one is read."""
-        raise AttributeError(
-            f"a state of the physics keeps no {name}: a sensor measures it, or Physics(..., "
-            f'reads=("{name}",)) keeps it for physics.read(data, "{name}")'
-        )
-
 
 def resolve(implementation: str, worlds: int | None = None) -> str:
     """The implementation for `worlds` parallel environments on this machine: native, mjx or warp.
@@ -140,8 +133,6 @@ class Physics:
 
     def read(self, state: PhysicsState, name: str) -> Array:
         """The field `name` of MjData, one of `reads`, at `state`."""
-        if name not in self.reads:
-            raise ValueError(f'reads={self.reads} of Physics lacks "{name}"')
         shapes = [mjcf.shape(self.asset, each) for each in self.reads]
         ends = self.model.nsensordata + np.cumsum([prod(shape) for shape in shapes])
         index = self.reads.index(name)

@@ -1,8 +1,7 @@
 """What is drawn of an environment: its `scene` at its `pose`, else the model that it simulates.
 
-A model without a sky, a light or a camera of the name CAMERA gets ours: a gradient; a lamp above
-it, with colours for what is in MuJoCo's grey; and a free camera that follows its first body, so
-near that what moves fills the picture.
+A model without a sky, a light or a camera of the name CAMERA gets ours: a gradient, a brighter
+headlight, and a free camera that follows its first body.
 """
 
 from collections.abc import Callable
@@ -20,11 +19,8 @@ from hybrid_rl.types import EnvState
 
 CAMERA = "track"  # used if the scene has a camera of this name
 SKY = ((0.65, 0.78, 0.92), (0.96, 0.97, 0.98))  # above, and at the horizon
-GREY = (0.5, 0.5, 0.5, 1.0)  # of a geom whose author chose no colour
-ROBOT, GROUND = (0.91, 0.62, 0.24, 1.0), (0.40, 0.46, 0.52, 1.0)  # instead of it
-LAMP = (0.0, 0.45, -1.0)  # direction of its light
+AMBIENT = 0.35  # of the headlight, instead of MuJoCo's 0.1
 ELEVATION = -15.0  # [degrees] of the free camera, instead of MuJoCo's -45
-MARGIN = 1.1  # of the free camera's distance
 DRAWN = "write `scene(self)`, MJCF text or its file, and `pose(self, state)`, its qpos at a state"
 
 
@@ -44,11 +40,8 @@ def pose_of(env: Any) -> Callable[[EnvState], Array]:
 
 def check_drawable(env: Any) -> None:
     """Raise UsageError for an environment that cannot be drawn."""
-    try:
-        scene_of(env)
-        pose_of(env)
-    except ValueError as error:
-        raise UsageError(str(error)) from error
+    scene_of(env)
+    pose_of(env)
 
 
 def _first(env: Any) -> PhysicsState:
@@ -56,7 +49,7 @@ def _first(env: Any) -> PhysicsState:
     found = simulated(jax.eval_shape(env.reset, jax.random.key(0)))
     if not found:
         line = f"{type(env).__name__} has no `scene` and no `pose`: the world cannot be drawn"
-        raise ValueError(f"{line}; {DRAWN}")
+        raise UsageError(f"{line}; {DRAWN}")
     return found[0]
 
 
@@ -76,18 +69,9 @@ def dressed(scene: str) -> mujoco.MjModel:
         sky = spec.add_texture(type=mujoco.mjtTexture.mjTEXTURE_SKYBOX, width=256, height=1536)
         sky.builtin = mujoco.mjtBuiltin.mjBUILTIN_GRADIENT
         sky.rgb1, sky.rgb2 = SKY
-    if spec.lights:
-        return spec.compile()
-    centre, size = _robot(spec.compile())
-    lamp = spec.worldbody.add_light(type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL, dir=LAMP)
-    lamp.pos = centre - 4 * size * np.array(LAMP)
-    lamp.diffuse, lamp.specular = [0.55] * 3, [0.0] * 3
-    head = spec.visual.headlight
-    head.ambient = np.maximum(head.ambient, 0.35)
-    model = spec.compile()
-    plain = (model.geom_matid < 0) & (model.geom_rgba == np.array(GREY, np.float32)).all(1)
-    model.geom_rgba[plain] = np.where(_moves(model)[plain, None], ROBOT, GROUND)
-    return model
+    if not spec.lights:
+        spec.visual.headlight.ambient = np.maximum(spec.visual.headlight.ambient, AMBIENT)
+    return spec.compile()
 
 
 def camera(model: mujoco.MjModel) -> mujoco.MjvCamera:
@@ -100,22 +84,5 @@ def camera(model: mujoco.MjModel) -> mujoco.MjvCamera:
     mujoco.mjv_defaultFreeCamera(model, found)
     if model.nbody > 1:
         found.type, found.trackbodyid = mujoco.mjtCamera.mjCAMERA_TRACKING, 1
-        found.distance = MARGIN * _robot(model)[1] / np.sin(np.radians(model.vis.global_.fovy / 2))
-        found.elevation = max(found.elevation, ELEVATION)
+        found.elevation = ELEVATION
     return found
-
-
-def _moves(model: mujoco.MjModel) -> np.ndarray:
-    """Whether [ngeom] each geom belongs to a body that can move."""
-    return model.body_weldid[model.geom_bodyid] > 0
-
-
-def _robot(model: mujoco.MjModel) -> tuple[np.ndarray, float]:
-    """Centre of mass [3] of the first body, and radius of all that moves about it."""
-    data, moves = mujoco.MjData(model), _moves(model)
-    if not moves.any():
-        return model.stat.center, model.stat.extent
-    mujoco.mj_fwdPosition(model, data)
-    centre = data.subtree_com[1]
-    away = np.linalg.norm(data.geom_xpos[moves] - centre, axis=1) + model.geom_rbound[moves]
-    return centre, float(away.max())

@@ -38,11 +38,8 @@ class Limit:
                 of = f"the norm of {self.quantity}" if self.norm else self.quantity
                 words = f"{of} needs {size} number{'s' if size > 1 else ''}"
                 raise FieldError(self, name, words)
-        least, most = self._bounds()
-        if not np.isfinite([*least, *most]).any():
+        if not np.isfinite(np.concatenate(self._bounds())).any():
             raise FieldError(self, "most", "limits nothing; give most, least or both")
-        if (most < least).any():
-            raise FieldError(self, "most", f"must be at least least={self.least}")
 
     def _bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """`least` and `most` [1 or k], infinite where there is no limit."""

@@ -36,7 +36,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import agreement
+from hybrid_rl.core import adjoint
 from hybrid_rl.core.batching import join, prepend
 from hybrid_rl.core.lifting import is_world
 from hybrid_rl.core.rollout import Priced, predict_members, priced
@@ -239,4 +239,4 @@ class GradientController:
         if self.policy is None:
             return {}
         step = partial(self.model.step, params.model)
-        return agreement.metrics(step, self.policy, params, value, x, u, self.horizon)
+        return adjoint.agreement(step, self.policy, params, value, x, u, self.horizon)

@@ -20,7 +20,7 @@ from jax import Array
 from hybrid_rl.core import lifting, sampling
 from hybrid_rl.core.rollout import priced
 from hybrid_rl.core.sampling import Candidates, Kept
-from hybrid_rl.fields import Count, FieldError, Fraction, NotNegative, Positive, part
+from hybrid_rl.fields import Count, Fraction, NotNegative, Positive, part
 from hybrid_rl.protocols import Model, Objective, Proposal
 from hybrid_rl.types import Params, Spec
 
@@ -35,16 +35,12 @@ class RefitsController:
     horizon: Count = 15  # T [decisions]
     samples: Count = 128  # K
     share: Fraction = 0.25  # of the candidates
-    elites: Count = 16
+    elites: Count = 16  # at most K
     refits: Count = 4
     spread: Positive = 1.0  # [u] the first standard deviation
     floor: Positive = 0.05  # [u] the least one
     temperature: Positive = 0.5  # lambda [std of the elites' returns]
     disagreement_price: NotNegative = 3.0  # of one running std of the change, in one decision
-
-    def __post_init__(self) -> None:
-        if self.elites > self.samples:
-            raise FieldError(self, "elites", f"must be at most samples={self.samples}")
 
     def init(self, spec: Spec) -> Kept:
         """A plan of zeros, and the initial carries and memory."""

@@ -20,7 +20,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import agreement, lifting, sampling
+from hybrid_rl.core import adjoint, lifting, sampling
 from hybrid_rl.core.sampling import Candidates, Kept
 from hybrid_rl.fields import Count, FieldError, Positive, Signed, part
 from hybrid_rl.protocols import Model, Objective, Policy, Proposal
@@ -127,7 +127,7 @@ class SamplingController:
     def _comparison(self, params: Params, x: Array, plan: Array, to_go: ToGo) -> dict[str, Array]:
         """The metrics of `_agreement`."""
         step, policy = partial(self.model.step, params.model), cast(Policy, self.policy)
-        return agreement.metrics(
+        return adjoint.agreement(
             step, policy, params, lambda path: to_go(path)[0], x, plan[0], self.horizon
         )
 

@@ -8,7 +8,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.fields import FieldError, Natural, part
+from hybrid_rl.fields import Natural, part
 from hybrid_rl.protocols import Controller
 from hybrid_rl.types import Params, Spec
 
@@ -31,11 +31,6 @@ class StagesController:
     stages: Mapping[str, Controller]  # in order
     decisions: tuple[Natural, ...] = ()  # of every stage but the last
     of_run: bool = False  # counts decisions of the run; without a run, the last stage acts
-
-    def __post_init__(self) -> None:
-        if len(self.decisions) != (count := len(self.stages) - 1):
-            words = f"needs a number for each stage but the last, here {count}"
-            raise FieldError(self, "decisions", words)
 
     @property
     def _acting(self) -> tuple[list[str], list[int]]:

@@ -7,7 +7,7 @@ Source: thesis section 7.5; feed-forward is ours.
 
 from dataclasses import replace
 from functools import partial
-from typing import Annotated, Any, Protocol
+from typing import Annotated, Any, cast
 
 from jax import Array
 
@@ -16,24 +16,18 @@ from hybrid_rl.protocols import BalancedEnv, Controller, GoalPolicy, Model
 from hybrid_rl.types import Params, Spec
 
 
-class TrackingEnv(BalancedEnv, Protocol):
-    """An environment whose observation contains a reference that the robot is to follow."""
-
-    def reference(self, obs: Array) -> tuple[Array, Array]:
-        """The observations [o] that the robot should have at `obs` [o] and one decision later.
-
-        Their own reference entries are those of `obs`.
-        """
-
-
 @part
 class TrackController:
-    """`controller`, whose policy aims at the reference instead of the equilibrium."""
+    """`controller`, whose policy aims at the reference instead of the equilibrium.
+
+    world.reference(obs [o]) are the observations [o] that the robot should have, now and one
+    decision later; their own reference entries are those of obs.
+    """
 
     controller: Controller
     model: Model
     policy: GoalPolicy
-    world: Annotated[TrackingEnv, has("reference", "needs an environment with a reference")]
+    world: Annotated[BalancedEnv, has("reference", "needs an environment with a reference")]
 
     def init(self, spec: Spec) -> Any:
         """The initial state of the inner controller."""
@@ -43,7 +37,9 @@ class TrackController:
         self, params: Params, state: Any, obs: Array, key: Array
     ) -> tuple[Array, Any, dict[str, Array]]:
         """Action [m], next state, metrics of the inner controller. The key is consumed."""
-        now, after = (self.model.lift(params.model, x) for x in self.world.reference(obs))
+        now, after = (
+            self.model.lift(params.model, x) for x in cast(Any, self.world).reference(obs)
+        )
 
         step = partial(self.model.step, params.model)
         policy = self.policy.aim(params.policy, now, after, step)

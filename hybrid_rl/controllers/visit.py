@@ -33,8 +33,6 @@ class VisitController:
 
     def init(self, spec: Spec) -> Any:
         """The initial state of the inner controller."""
-        if len(self.radius) not in (1, spec.obs):
-            raise ValueError(f"visit.radius={list(self.radius)}: must hold 1 number or {spec.obs}")
         return self.controller.init(spec)
 
     def act(

@@ -1,6 +1,6 @@
 """Actor-critic learning: the fields that its learners share, and the steps of an update.
 
-    y    = returns along paths of decisions, recorded or imagined (`core.soft_return`)
+    y    = returns along paths of decisions, recorded or imagined (`core.returns`)
     L_Q  = 0.5 sum_i mean w (Q_i(x, u) - y)^2
     L_pi = -mean V_0
     L_a  = -log(alpha) mean (log pi(v|x) + target),        v ~ pi(x)
@@ -21,7 +21,7 @@ import optax
 from flax import struct
 from jax import Array
 
-from hybrid_rl.core import decay, soft_return, statistics
+from hybrid_rl.core import decay, returns, statistics
 from hybrid_rl.fields import Count, Discount, NotNegative, Positive, Share, part
 from hybrid_rl.protocols import Critic, LearnedPolicy, Schedule
 from hybrid_rl.types import Batch, Imagined, Params, PyTree, Spec
@@ -181,10 +181,10 @@ class SoftActorCritic(ActorCritic):
         """`state` after a step of the critic to the returns y of the first `steps` decisions."""
         alpha = jnp.exp(state.log_alpha)
         last = self.critic.value(state.target, paths.x[-1], paths.u[-1])
-        y = soft_return.returns(paths, alpha, self.discount, last)[1]
+        y = returns.soft(paths, alpha, self.discount, last)[1]
         first = slice(steps)
         x, u = (each[first].reshape(-1, each.shape[-1]) for each in (paths.x, paths.u))
-        y, reached = y[first].ravel(), soft_return.reached(paths)[first].ravel()
+        y, reached = y[first].ravel(), returns.reached(paths)[first].ravel()
         rate = self.factor(params) * self.critic_learning_rate
         state, (loss, q) = self.critic_step(state, rate, x, u, y, reached)
         return state, {"sac/critic_loss": loss, "sac/q": q}
@@ -198,7 +198,7 @@ class SoftActorCritic(ActorCritic):
         def loss(policy: Any) -> tuple[Array, Imagined]:
             paths = imagine(policy)
             last = self.critic.value(state.critic, paths.x[-1], paths.u[-1])
-            return -soft_return.returns(paths, alpha, self.discount, last)[0].mean(), paths
+            return -returns.soft(paths, alpha, self.discount, last)[0].mean(), paths
 
         rate = self.factor(params) * self.policy_learning_rate
         state, (value, paths, norm) = self.policy_step(state, rate, loss, self.max_grad_norm)

@@ -9,6 +9,7 @@ dependence on u, which is missing in print.
 """
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple
 
 import jax
@@ -17,7 +18,8 @@ from jax import Array
 
 from hybrid_rl.core import returns, rollout
 from hybrid_rl.core.rollout import scan_unroll
-from hybrid_rl.types import Path, Return, Reward, Step
+from hybrid_rl.protocols import Policy
+from hybrid_rl.types import Params, Path, Return, Reward, Step
 
 
 class Adjoint(NamedTuple):
@@ -127,6 +129,25 @@ def insertion_ahead(
     return objective(path._replace(u=path.u.at[0].set(u))) - value + slope
 
 
+def agreement(
+    step: Step, policy: Policy, params: Params, value: Return, x: Array, u: Array, horizon: int
+) -> dict[str, Array]:
+    """Metrics of the action u [m] at x [n] against that of the policy, and of what it gains.
+
+    The share |mu| / (|mu| + |u - mu|) is 1 if the plan follows the policy, else near 0.
+
+    value: J of a path. horizon: decisions over which the insertion of u is valued.
+    """
+    mean = partial(policy.mean, params.policy)
+    insertion = insertion_ahead(step, mean, value, x, u, horizon)
+    own, correction = jnp.linalg.norm(mean(x)), jnp.linalg.norm(u - mean(x))
+    return {
+        "planner/mode_insertion_gradient": insertion,
+        **per_variance(insertion, policy.variance(params.policy, x)),
+        "planner/policy_share": own / (own + correction + 1e-6),
+    }
+
+
 def plan(
     step: Step, reward: Reward, x: Array, before: Array, *, iterations: int = 10, gain: float = 0.2
 ) -> Array:
@@ -140,11 +161,7 @@ def plan(
         for _ in range(60):
             a = plan(step, reward, x, a)
             x, a = step(x, a[0]), sampling.shift(a)
-
-    Raises:
-        ValueError: for shapes that are not those, or another x [n] from `step` than x.
     """
-    returns.check_start(step, x, before)
 
     def policy(x: Array) -> Array:
         return jnp.zeros_like(before[0])

@@ -12,4 +12,4 @@ def bonus(world: Env, given: float | None) -> float:
     """The reward of a decision before the goal's own: `given`, or by whether episodes can end."""
     if given is not None:
         return given
-    return FALLS if hasattr(world, "ended") else 0.0
+    return 0.0 if getattr(world, "ended", None) is None else FALLS

@@ -29,12 +29,10 @@ def at_equilibrium(world: AnalyticEnv) -> tuple[np.ndarray, np.ndarray]:
         e = world.to_local(x)
         a, b = map(np.asarray, linearise(step, e, u))
         moved = float(np.abs(step(e, u) - e).max())
-    name = type(world).__name__
-    if not moved < STILL * max(1, float(np.abs(x).max())):
-        line = f"dynamics(*equilibrium()) differs from equilibrium() by {moved:.2g}"
-        raise ValueError(f"env: {name}.{line}; it must be a state and an action at rest")
-    if not (np.isfinite(a).all() and np.isfinite(b).all()):
-        raise ValueError(f"env: the derivatives of {name}.dynamics are not finite at equilibrium()")
+    rests = moved < STILL * max(1, float(np.abs(x).max()))
+    if not (rests and np.isfinite(a).all() and np.isfinite(b).all()):
+        line = "must be a state and an action at rest, where dynamics have derivatives"
+        raise ValueError(f"env: {type(world).__name__}.equilibrium(): {line}; moves by {moved:.2g}")
     return a, b
 
 

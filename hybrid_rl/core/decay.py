@@ -1,5 +1,9 @@
-"""Decay along a run: of exploration and of learning rates."""
+"""Decay: of exploration and learning rates along a run, and of the weights of layers."""
 
+from typing import Any
+
+import jax
+import optax
 from jax import Array
 
 from hybrid_rl.protocols import Schedule
@@ -21,3 +25,20 @@ def of_rates(schedule: Schedule | None, decisions: Array | None) -> Array | floa
     It is 1, too, where decisions are not counted: before the run and after it.
     """
     return 1.0 if schedule is None or decisions is None else schedule.factor(decisions)
+
+
+def adamw(learning_rate: Any, weight_decay: float) -> optax.GradientTransformation:
+    """AdamW (Loshchilov and Hutter 2019) with decay of "kernel" leaves alone; Adam if it is 0.
+
+    Biases, deviations and running statistics do not decay.
+    """
+    if not weight_decay:
+        return optax.adam(learning_rate)
+    return optax.adamw(learning_rate, weight_decay=weight_decay, mask=_matrices)
+
+
+def _matrices(params: Any) -> Any:
+    """Which leaves are matrices of layers."""
+    return jax.tree_util.tree_map_with_path(
+        lambda path, _: getattr(path[-1], "key", None) == "kernel", params
+    )

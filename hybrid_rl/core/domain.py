@@ -1,7 +1,6 @@
 """A box in some coordinates of a state: the region that a method explores."""
 
 from math import prod
-from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -28,20 +27,8 @@ class Box:
     def __post_init__(self) -> None:
         if not len(self.coordinates) == len(self.low) == len(self.high) or not self.coordinates:
             raise ValueError("domain: coordinates, low and high must have one length, 1 or more")
-        if len(set(self.coordinates)) < self.size:
-            raise FieldError(self, "coordinates", "must differ")
         if not all(a < b for a, b in zip(self.low, self.high, strict=True)):
             raise FieldError(self, "low", f"must lie below high={list(self.high)}")
-
-    def check_target(self, part: Any) -> None:
-        """Raise FieldError if all of the target of `part` lies outside, where a target can say so.
-
-        The weights of points in the box would otherwise follow its faint tails.
-        """
-        outside = getattr(part.target, "outside", None)
-        if outside is not None and outside(self.low, self.high):
-            box = f"domain.low={list(self.low)} domain.high={list(self.high)}"
-            raise FieldError(part, "target", f"all of it lies outside {box}; change one of the two")
 
     @property
     def size(self) -> int:

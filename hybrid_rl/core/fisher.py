@@ -51,13 +51,8 @@ def jacobians(step: ParametricStep, theta: Any, x: Array, u: Array) -> tuple[Arr
 
 
 def along(step: ParametricStep, theta: Any, path: Path, kind: str) -> Array:
-    """F [T, n, P] along path, x [T+1, n] and u [T, m]; kind: step or path.
-
-    Raises:
-        ValueError: for another kind.
-    """
-    if kind not in KINDS:
-        raise ValueError(f"kind {kind}: choose one of {', '.join(KINDS)}")
+    """F [T, n, P] along path, x [T+1, n] and u [T, m]; kind: step or path."""
+    assert kind in KINDS, kind
     if kind == "step":
         one = jax.vmap(lambda x, u: jacobian(lambda theta: step(theta, x, u), theta))
         return one(path.x[:-1], path.u)
@@ -108,16 +103,8 @@ def criterion(name: str, F: Array, sigma: Array, prior: Array) -> Array:
     """One of CRITERIA [] for F [T, n, P], sigma [n] and prior c [P] above 0; larger is better.
 
     All but `full` take the diagonal of the information, without the correlations of parameters.
-
-    Raises:
-        ValueError: for another name, or other shapes of sigma and prior.
     """
-    if name not in CRITERIA:
-        raise ValueError(f"criterion {name}: choose one of {', '.join(CRITERIA)}")
-    for what, given, size in (("sigma", sigma, F.shape[-2]), ("prior", prior, F.shape[-1])):
-        if jnp.shape(given) != (size,):
-            line = f"has shape {jnp.shape(given)}, must have {(size,)}"
-            raise ValueError(f"{what} {line}; F is [T, n, P] = {F.shape}")
+    assert name in CRITERIA, name
     if name == "full":
         return log_det(F, sigma, prior)
     each = diagonal(F, sigma)  # [T, P]

@@ -57,15 +57,8 @@ def add(
 
 
 def fold(factor: Factor, inputs: Array, outputs: Array) -> Factor:
-    """The factor of the stacked rows: U'U + inputs' inputs, U'Y + inputs' outputs.
-
-    Raises:
-        ValueError: unless the rows are [B, r] and [B, a].
-    """
-    size, wanted = len(factor.U), factor.Y.shape
-    if (*inputs.shape[1:], *outputs.shape[1:]) != wanted or len(inputs) != len(outputs):
-        line = f"inputs {inputs.shape}, outputs {outputs.shape}: must be [B, r] and [B, a]"
-        raise ValueError(f"{line}, with r, a = {wanted}, as the first K is [a, r]")
+    """The factor of the rows [B, r], [B, a] too: U'U + inputs' inputs, U'Y + inputs' outputs."""
+    size = len(factor.U)
     top = jnp.concatenate([factor.U, factor.Y], axis=1)
     rows = jnp.concatenate([inputs, outputs], axis=1)
 

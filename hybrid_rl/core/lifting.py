@@ -64,6 +64,4 @@ def select(obs: Array, coordinates: tuple[int, ...] | None) -> Array:
 def check_coordinates(name: str, coordinates: tuple[int, ...] | None, size: int) -> None:
     """Raise ValueError unless an observation [size] has `coordinates`, a field `name`."""
     if coordinates and not (min(coordinates) >= 0 and max(coordinates) < size):
-        raise ValueError(
-            f"{name}={list(coordinates)}: the observation of this task has entries 0 to {size - 1}"
-        )
+        raise ValueError(f"{name}={list(coordinates)}: must be some of the entries 0 to {size - 1}")

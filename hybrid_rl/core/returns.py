@@ -1,14 +1,22 @@
-"""The rewards from each decision to the end of a path.
+"""Returns: of the rewards from each decision to the end of a path, and with the policy's entropy.
 
-S_t = r_t + c_t S_{t+1},   S_T = the value of the last state
+    S_t = r_t + c_t S_{t+1},   S_T = the value of the last state
+
+The maximum-entropy return along trajectories of a policy in a model:
+
+    V_H = Q(x_H, u_H) - alpha log pi_H
+    y_t = r_t + discount c_t V_{t+1},   V_t = y_t - alpha log pi_t,   t < H
+
+with c_t the chance that the episode continues. V_0 is what a policy maximises by gradients through
+the model, as in MAAC (Clavera et al. 2020); for H = 0 it is the policy's objective in SAC. y_t,
+with the target critic's Q, are model-based value expansion (Feinberg et al. 2018).
 """
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.protocols.contract import words
-from hybrid_rl.types import Path, Reward, Step
+from hybrid_rl.types import Imagined, Path, Reward
 
 
 def to_go(rewards: Array, goes_on: Array, last: Array, unroll: bool = False) -> Array:
@@ -25,18 +33,23 @@ def to_go(rewards: Array, goes_on: Array, last: Array, unroll: bool = False) -> 
 
 def rewards(reward: Reward, path: Path) -> Array:
     """r [T] along path, x [T+1, n] and u [T, m]."""
-    r = jax.vmap(reward)(path.x[:-1], path.u, path.x[1:])
-    if r.ndim != 1:
-        raise ValueError(f"reward returns {list(r.shape[1:])}; it must return one number, []")
-    return r
+    return jax.vmap(reward)(path.x[:-1], path.u, path.x[1:])
 
 
-def check_start(step: Step, x: Array, before: Array) -> None:
-    """Raise ValueError unless they are a state [n] and a plan [T, m], and `step` gives such x."""
-    if (jnp.ndim(x), jnp.ndim(before)) != (1, 2):
-        given = f"x is {list(jnp.shape(x))} and before {list(jnp.shape(before))}"
-        raise ValueError(f"{given}; they must be [n] and [T, m]: jax.vmap plans for many states")
-    traced = jax.eval_shape(lambda x, u: (step(x, u), x), x, before[0])
-    after, wanted = map(words, traced)
-    if after != wanted:
-        raise ValueError(f"step returns {after}, where x is {wanted}; it must return another x")
+def soft(paths: Imagined, alpha: Array, discount: float, last: Array) -> tuple[Array, Array]:
+    """V_0 [B] and y [H, B] along paths whose last decisions have action values `last` [B]."""
+
+    def back(value: Array, at: tuple[Array, Array, Array]) -> tuple[Array, Array]:
+        r, continues, log_prob = at
+        y = r + discount * continues * value
+        return y - alpha * log_prob, y
+
+    along = paths.reward, paths.continues, paths.log_prob[:-1]
+    value = last - alpha * paths.log_prob[-1]
+    return jax.lax.scan(back, value, along, reverse=True, unroll=True)
+
+
+def reached(paths: Imagined) -> Array:
+    """The probability [H, B] that a trajectory does not end before each decision."""
+    before = jnp.concatenate([jnp.ones_like(paths.continues[:1]), paths.continues[:-1]])
+    return jnp.cumprod(before, 0)

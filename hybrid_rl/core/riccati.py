@@ -64,11 +64,7 @@ def finite_horizon(A: Array, B: Array, Q: Array, R: Array, steps: int) -> Array:
     """P [n, n] of the cost over `steps` decisions: A [n, n], B [n, m], Q [n, n], R [m, m].
 
     It is finite also where no gain stabilises the system, unless float32 overflows.
-
-    Raises:
-        ValueError: for other shapes.
     """
-    _check_shapes(A, B, "Q", Q, R)
     eye = jnp.eye(len(A), dtype=A.dtype)
     G, H, P = _symmetric(B @ solve(R, B.T)), Q, None
     while True:
@@ -84,19 +80,8 @@ def finite_horizon(A: Array, B: Array, Q: Array, R: Array, steps: int) -> Array:
 
 
 def gain(A: Array, B: Array, P: Array, R: Array) -> Array:
-    """K [m, n] = (R + B' P B)^-1 B' P A, with shapes and errors as of `finite_horizon`."""
-    _check_shapes(A, B, "P", P, R)
+    """K [m, n] = (R + B' P B)^-1 B' P A, with shapes as of `finite_horizon`."""
     return solve(_symmetric(R + B.T @ P @ B), B.T @ P @ A)
-
-
-def _check_shapes(A: Array, B: Array, name: str, P: Array, R: Array) -> None:
-    """Raise ValueError unless A, P are [n, n], B is [n, m] and R [m, m]; name: of P."""
-    n, m = len(A), jnp.shape(B)[-1:]
-    wanted = {"A": (n, n), "B": (n, *m), name: (n, n), "R": (*m, *m)}
-    for (what, size), value in zip(wanted.items(), (A, B, P, R), strict=True):
-        if jnp.shape(value) != size:
-            line = f"{what} has shape {jnp.shape(value)}, must have {size}"
-            raise ValueError(f"{line}; A is [n, n], B [n, m], {name} [n, n], R [m, m]")
 
 
 def _symmetric(P: Array) -> Array:

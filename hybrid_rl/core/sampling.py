@@ -191,11 +191,7 @@ def plan(
         for key in jax.random.split(jax.random.key(0), 60):
             a = plan(step, reward, x, a, key)
             x, a = step(x, a[0]), shift(a)
-
-    Raises:
-        ValueError: for shapes that are not those, or another x [n] from `step` than x.
     """
-    returns.check_start(step, x, before)
 
     def propose(carry: None, x: Array, a: Array, noise: Array) -> tuple[Array, Array, None]:
         return jnp.clip(a[None] + std * noise, -1, 1), jnp.zeros(samples), carry

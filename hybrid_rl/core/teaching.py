@@ -1,13 +1,61 @@
-"""Answers of a teacher: its actions at an observation, or along a path that begins there."""
+"""A teacher's answers, and its labels: a ring of observations and actions, and what is summed over.
+
+`Queried` is what a learner that asks a teacher keeps in `Params.labels`.
+"""
 
 from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
+from flax import struct
 from jax import Array
 
 from hybrid_rl.protocols import Controller, Model
-from hybrid_rl.types import Params, Spec
+from hybrid_rl.types import Params
+
+RATE = 0.02  # of the running mean of the evidence; our choice
+
+
+@struct.dataclass
+class Labels:
+    """What the teacher answered; `count` labels so far, of which the last C are kept."""
+
+    obs: Array  # [C, o]
+    action: Array  # [C, m]
+    count: Array  # [] int32
+
+
+@struct.dataclass
+class Queried:
+    """What targets that choose queries consult."""
+
+    labels: Labels
+    scale: Array  # [o] standard deviations of the first demonstration; 1 without one
+    evidence: Any  # sum over the labels of what the target asked for; None: nothing
+
+
+def empty(capacity: int, o: int, m: int) -> Labels:
+    """No labels yet."""
+    return Labels(jnp.zeros((capacity, o)), jnp.zeros((capacity, m)), jnp.zeros((), jnp.int32))
+
+
+def add(labels: Labels, obs: Array, action: Array, when: Array) -> Labels:
+    """The labels with obs [T, o] and action [T, m] if `when` []; T divides C."""
+    slot = labels.count % len(labels.obs)
+
+    def put(ring: Array, new: Array) -> Array:
+        old = jax.lax.dynamic_slice_in_dim(ring, slot, len(new))
+        return jax.lax.dynamic_update_slice_in_dim(ring, jnp.where(when, new, old), slot, 0)
+
+    count = labels.count + jnp.where(when, len(obs), 0)
+    return Labels(put(labels.obs, obs), put(labels.action, action), count)
+
+
+def draw(labels: Labels, size: int, key: Array) -> tuple[Array, Array]:
+    """obs [size, o] and action [size, m], drawn uniformly with replacement; needs a label."""
+    filled = jnp.clip(labels.count, 1, len(labels.obs))
+    drawn = jax.random.randint(key, (size,), 0, filled)
+    return labels.obs[drawn], labels.action[drawn]
 
 
 class Answer(NamedTuple):
@@ -15,33 +63,6 @@ class Answer(NamedTuple):
 
     obs: Array  # [T, o]
     action: Array  # [T, m]
-
-
-def require(teacher: Controller | None) -> Controller:
-    """The teacher; raises ValueError if there is none."""
-    if teacher is None:
-        raise ValueError(
-            "expert=null: this task has no expert that teaches; give expert=NAME of conf/expert"
-        )
-    return teacher
-
-
-def begin(teacher: Controller, spec: Spec) -> Any:
-    """The state of `teacher` before an answer."""
-    kind, sizes = type(teacher).__name__, f"{spec.obs} observed numbers to {spec.act}"
-
-    def act() -> Array:
-        key, obs = jax.random.key(0), jnp.zeros(spec.obs)
-        return teacher.act(Params(), teacher.init(spec), obs, key)[0]
-
-    try:
-        shape = jax.eval_shape(act).shape
-    except (TypeError, IndexError, ValueError) as error:
-        line = str(error).partition("\n")[0]
-        raise ValueError(f"expert={kind}: does not map {sizes}: {line}") from error
-    if shape != (spec.act,):
-        raise ValueError(f"expert={kind}: decides {list(shape)}, and must map {sizes}")
-    return teacher.init(spec)
 
 
 def answer(

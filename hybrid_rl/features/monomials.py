@@ -25,31 +25,11 @@ class Monomials:
     constant: bool = False
     terms: tuple[tuple[int, ...], ...] = ()  # indices into the coordinates; repeated for powers
 
-    def __post_init__(self) -> None:
-        if not all(len(term) >= 1 and min(term) >= 0 for term in self.terms):
-            raise ValueError("features.terms: each must be a list of indices, 0 or more")
-        if self.coordinates is not None:
-            self._check(len(self.coordinates))
-
-    def _check(self, size: int) -> None:
-        """Raise ValueError unless all lists fit `size` coordinates."""
-        for name in ("scale", "centre"):
-            values = getattr(self, name)
-            if len(values) not in (1, size):
-                raise ValueError(
-                    f"features.{name}={list(values)}: must hold 1 number or {size}, one for each "
-                    "coordinate"
-                )
-        wrong = [list(term) for term in self.terms if max(term) >= size]
-        if wrong:
-            raise ValueError(
-                f"features.terms={wrong[0]}: has an index above {size - 1}, the last coordinate"
-            )
-
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """No parameters."""
-        self._check(spec.obs if self.coordinates is None else len(self.coordinates))
         check_coordinates("features.coordinates", self.coordinates, spec.obs)
+        size = spec.obs if self.coordinates is None else len(self.coordinates)
+        check_coordinates("features.terms", tuple(i for term in self.terms for i in term), size)
         return {}
 
     def __call__(self, params: dict[str, Any], obs: Array) -> Array:

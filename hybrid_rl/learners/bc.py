@@ -20,9 +20,8 @@ import optax
 from flax import struct
 from jax import Array
 
-from hybrid_rl.core.clipping import check_saturation
+from hybrid_rl.core.decay import adamw
 from hybrid_rl.core.lifting import lift
-from hybrid_rl.core.optimisers import adamw
 from hybrid_rl.fields import Count, Inside, NotNegative, Positive, Share, part
 from hybrid_rl.protocols import Demonstrations, LearnedPolicy, Model
 from hybrid_rl.types import Batch, Params, PyTree, Spec
@@ -58,9 +57,6 @@ class BehaviourCloning:
     owns: ClassVar[tuple[str, ...]] = ("policy",)
     batches: ClassVar[int] = 1
     during_random: ClassVar[bool] = False  # starts after the random decisions
-
-    def __post_init__(self) -> None:
-        check_saturation(self, "cloning_learner")
 
     def init(self, key: Array, spec: Spec) -> CloningState:
         """Initial parameters and optimiser. The key is consumed."""

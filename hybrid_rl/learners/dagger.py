@@ -22,9 +22,8 @@ import optax
 from flax import struct
 from jax import Array
 
-from hybrid_rl.core import labels, statistics, teaching
+from hybrid_rl.core import statistics, teaching
 from hybrid_rl.core.batching import when_any
-from hybrid_rl.core.clipping import check_saturation
 from hybrid_rl.core.teaching import Answer
 from hybrid_rl.fields import Count, FieldError, Natural, NotNegative, Positive, Share, part
 from hybrid_rl.protocols import Controller, LearnedPolicy, Model, Target
@@ -37,7 +36,7 @@ class DAggerState:
 
     policy: Any
     optimiser: Any
-    labels: labels.Labels
+    labels: teaching.Labels
     evidence: Any  # mean over the labels of what the target sums; None: nothing
     seen: statistics.Running  # of the observations of the first demonstration
     rest: Any  # the teacher's state before an answer
@@ -80,33 +79,30 @@ class DAgger:
     every: ClassVar[int] = 1
 
     def __post_init__(self) -> None:
-        teaching.require(self.teacher)
-        check_saturation(self, "dagger_learner")
-        if self.candidates > 1 and self.spread == 0:
-            raise FieldError(self, "candidates", "needs spread above 0")
-        if self.candidates > 1 and self.target is None and not self.oracle:
-            raise FieldError(self, "candidates", "needs a target or oracle=true to choose one")
-        if self.oracle and self.target is not None:
-            raise FieldError(self, "oracle", "needs target=null")
-        if self.better and self.target is None:
-            raise FieldError(self, "better", "needs a target")
+        if self.teacher is None:
+            line = "expert=null: this task has no expert that teaches; give expert=NAME of"
+            raise ValueError(f"{line} conf/expert")
+        if self.target is None and (self.better or (self.candidates > 1 and not self.oracle)):
+            raise FieldError(self, "target", "is needed to compare candidates, or queries")
         if self.length > 1 and (self.model is None or self.first):
             raise FieldError(self, "length", "needs a model of the world, and first=0")
-        if self.spread > 0 and self.normalise and not self.first:
-            words = "needs first above 0, the decisions whose deviations it uses"
-            raise FieldError(self, "normalise", words)
         if self.capacity % self.length:
             raise FieldError(self, "capacity", f"must be a multiple of length={self.length}")
 
+    @property
+    def _teacher(self) -> Controller:
+        assert self.teacher is not None  # as __post_init__ has checked
+        return self.teacher
+
     def init(self, key: Array, spec: Spec) -> DAggerState:
         """An untrained clone without labels. The key is consumed."""
-        rest = teaching.begin(teaching.require(self.teacher), spec)
+        rest = self._teacher.init(spec)
         policy = self.policy.init(key, spec)
         count, zero = self.most or self.capacity // self.length, jnp.zeros((), jnp.int32)
         return DAggerState(
             policy,
             optax.adam(self.learning_rate).init(policy),
-            labels.empty(self.capacity, spec.obs, spec.act),
+            teaching.empty(self.capacity, spec.obs, spec.act),
             self._no_evidence(policy, spec),
             statistics.init(spec.obs),
             rest,
@@ -130,7 +126,7 @@ class DAgger:
         evidence = jax.tree.map(lambda mean: state.labels.count * mean, state.evidence)
         return {
             "policy": state.policy,
-            "labels": labels.Queried(state.labels, state.seen.scale, evidence),
+            "labels": teaching.Queried(state.labels, state.seen.scale, evidence),
         }
 
     def update(
@@ -177,7 +173,7 @@ class DAgger:
         asked, made = needed((due | leading, none), (params, state.rest, x, answering))
         slot = jnp.where(due, state.queries % len(state.decision), len(state.decision))
         return state.replace(
-            labels=labels.add(state.labels, made.obs, made.action, asked),
+            labels=teaching.add(state.labels, made.obs, made.action, asked),
             information=state.information.at[slot].set(value, mode="drop"),
             decision=state.decision.at[slot].set(state.decisions, mode="drop"),
             queries=state.queries + due,
@@ -204,8 +200,7 @@ class DAgger:
         """What is to be large [] at x [o]: the target, or for an oracle the clone's error."""
         if self.target is not None:
             return self.target.log_density(params, x)
-        teacher = teaching.require(self.teacher)
-        u = teaching.answer(teacher, None, params, state.rest, x, 1, key).action[0]
+        u = teaching.answer(self._teacher, None, params, state.rest, x, 1, key).action[0]
         return jnp.sum((self.policy.mean(state.policy, x) - u) ** 2)
 
     def _due(self, state: DAggerState, value: Array) -> Array:
@@ -220,8 +215,8 @@ class DAgger:
     def _answer(self, asked: tuple[Array, Answer], argument: tuple) -> tuple[Array, Answer]:
         """`asked` with the teacher's answer if it is due."""
         due, none = asked
-        teacher, (params, rest, x, key) = teaching.require(self.teacher), argument
-        new = teaching.answer(teacher, self.model, params, rest, x, self.length, key)
+        params, rest, x, key = argument
+        new = teaching.answer(self._teacher, self.model, params, rest, x, self.length, key)
         return due, jax.tree.map(lambda new, none: jnp.where(due, new, none), new, none)
 
     def fit(self, state: DAggerState, steps: Array | int, key: Array) -> DAggerState:
@@ -230,7 +225,7 @@ class DAgger:
 
         def one(i: Array, carry: tuple) -> tuple:
             policy, optimiser, _ = carry
-            x, u = labels.draw(state.labels, self.batch_size, jax.random.fold_in(key, i))
+            x, u = teaching.draw(state.labels, self.batch_size, jax.random.fold_in(key, i))
             u = jnp.clip(u, -self.edge, self.edge)
             value, grads = jax.value_and_grad(
                 lambda policy: -self.policy.log_prob(policy, x, u).mean()
@@ -250,9 +245,9 @@ class DAgger:
         if state.evidence is None or evidence is None:
             return state
         params = params._replace(policy=state.policy)
-        x = labels.draw(state.labels, self.batch_size, key)[0]
+        x = teaching.draw(state.labels, self.batch_size, key)[0]
         each = jax.vmap(lambda x: evidence(params, x))(x)
-        rate = jnp.maximum(1 / state.decisions, labels.RATE)
+        rate = jnp.maximum(1 / state.decisions, teaching.RATE)
 
         def mean(old: Array, each: Array) -> Array:
             return old + rate * (each.mean(0) - old)

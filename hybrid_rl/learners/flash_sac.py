@@ -15,7 +15,7 @@ learning rate falls by half over 1,000,000 decisions, here it is constant.
 
 import math
 from dataclasses import KW_ONLY
-from typing import Any, ClassVar, Protocol
+from typing import Annotated, Any, ClassVar
 
 import jax
 import jax.numpy as jnp
@@ -23,41 +23,9 @@ import optax
 from jax import Array
 
 from hybrid_rl.core.actor_critic import ActorCritic, ActorCriticState, adam_step
-from hybrid_rl.fields import Count, Positive, Share, part
+from hybrid_rl.fields import Count, Positive, Share, has, part
 from hybrid_rl.protocols import Critic, LearnedPolicy
-from hybrid_rl.types import Batch, Params, PyTree, Spec
-
-
-class CategoricalCritic(Critic, Protocol):
-    """A critic of distributions over scaled returns, whose mean is Q.
-
-    It normalises by batches; its parameters hold "weights" and "statistics".
-    """
-
-    def in_batch(self, params: PyTree, x: Array, u: Array) -> tuple[Array, PyTree]:
-        """log p [members, B, bins] at x [B, n] and u [B, m], normalised by that batch.
-
-        Also the parameters with the batch's statistics.
-        """
-
-    def target(self, log_p: Array, reward: Array, factor: Array, penalty: Array) -> Array:
-        """Probabilities [B, bins] of reward + factor (Z - penalty), each of the three [B].
-
-        Z is the return of the member with the smaller mean, of log p [members, B, bins].
-        """
-
-    def constrained(self, params: PyTree) -> PyTree:
-        """Parameters with weights projected to those that are allowed, after a gradient step."""
-
-
-class BatchPolicy(LearnedPolicy, Protocol):
-    """A policy that normalises by batches; its parameters hold "weights" and "statistics"."""
-
-    def in_batch(self, params: PyTree, x: Array, noise: Array) -> tuple[Array, Array, PyTree]:
-        """`sample` at x [B, n], normalised by that batch; parameters with its statistics."""
-
-    def constrained(self, params: PyTree) -> PyTree:
-        """Parameters with weights projected to those that are allowed, after a gradient step."""
+from hybrid_rl.types import Batch, Params, Spec
 
 
 @part
@@ -67,8 +35,8 @@ class FlashSAC(ActorCritic):
     Its rewards are divided by `params.scale`, the scale of returns.
     """
 
-    policy: BatchPolicy
-    critic: CategoricalCritic
+    policy: Annotated[LearnedPolicy, has("in_batch", "needs policy=unit_gaussian")]
+    critic: Annotated[Critic, has("in_batch", "needs critic=categorical_q")]
     _: KW_ONLY
     learning_rate: Positive = 3e-4
     alpha: Positive = 0.01  # initial temperature, for scaled rewards
@@ -79,6 +47,11 @@ class FlashSAC(ActorCritic):
     updates: float = 0.5  # steps of the policy per decision
 
     during_random: ClassVar[bool] = False  # starts after the random decisions
+
+    @property
+    def _batched(self) -> tuple[Any, Any]:
+        """Policy and critic; their parameters hold "weights" and "statistics" of batches."""
+        return self.policy, self.critic
 
     def init(self, key: Array, spec: Spec) -> ActorCriticState:
         """Initial parameters, optimisers of their "weights", and target. The key is consumed."""
@@ -110,7 +83,7 @@ class FlashSAC(ActorCritic):
 
         def loss(weights: Any) -> tuple[Array, tuple[Array, Any]]:
             known = {**state.policy, "weights": weights}
-            v, log_prob, known = self.policy.in_batch(known, both, noise)
+            v, log_prob, known = self._batched[0].in_batch(known, both, noise)
             q = self.critic.value(state.critic, batch.obs, v[:b])
             return jnp.mean(alpha * log_prob[:b] - q), (-log_prob[:b].mean(), known["statistics"])
 
@@ -118,7 +91,7 @@ class FlashSAC(ActorCritic):
             state.policy["weights"]
         )
         weights, optimiser = adam_step(rate, grads, state.policy_optimiser, state.policy["weights"])
-        policy = self.policy.constrained({"weights": weights, "statistics": statistics})
+        policy = self._batched[0].constrained({"weights": weights, "statistics": statistics})
         aim = batch.action.shape[-1] * math.log(self.target_sigma * math.sqrt(2 * math.pi * math.e))
         log_alpha, alpha_optimiser = adam_step(
             rate, alpha * (entropy - aim), state.alpha_optimiser, state.log_alpha
@@ -139,20 +112,20 @@ class FlashSAC(ActorCritic):
         after, log_prob = self.policy.sample(state.policy, batch.next_obs, noise)
         x = jnp.concatenate([batch.obs, batch.next_obs])
         u = jnp.concatenate([batch.action, after])
-        log_p, _ = self.critic.in_batch(state.target, x, u)
+        log_p, _ = self._batched[1].in_batch(state.target, x, u)
         factor = self.discount * (1 - batch.terminated)
         penalty = jnp.exp(state.log_alpha) * log_prob
-        q = self.critic.target(log_p[:, b:], batch.reward, factor, penalty)
+        q = self._batched[1].target(log_p[:, b:], batch.reward, factor, penalty)
 
         def loss(weights: Any) -> tuple[Array, Any]:
-            log_p, known = self.critic.in_batch({**state.critic, "weights": weights}, x, u)
+            log_p, known = self._batched[1].in_batch({**state.critic, "weights": weights}, x, u)
             return -(q[None] * log_p[:, :b]).sum(-1).mean(), known["statistics"]
 
         (of_critic, statistics), grads = jax.value_and_grad(loss, has_aux=True)(
             state.critic["weights"]
         )
         weights, optimiser = adam_step(rate, grads, state.critic_optimiser, state.critic["weights"])
-        critic = self.critic.constrained({"weights": weights, "statistics": statistics})
+        critic = self._batched[1].constrained({"weights": weights, "statistics": statistics})
         target = optax.incremental_update(critic, state.target, self.tau)
         state = state.replace(critic=critic, critic_optimiser=optimiser, target=target)
         return state, {"sac/critic_loss": of_critic}

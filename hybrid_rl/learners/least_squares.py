@@ -57,11 +57,6 @@ class LeastSquares:
         state = RegressionState(least_squares.begin(mean, self.prior), mean, model)
         if self.demonstrations is not None:
             decisions = self.demonstrations.load()
-            if len(decisions.obs) < r:
-                raise ValueError(
-                    f"demonstrations: {len(decisions.obs)} decisions are too few for {r} "
-                    "regressors; record more, or use fewer features"
-                )
             rows = self._rows(model, decisions.obs, decisions.action, decisions.next_obs)
             state = state.replace(factor=least_squares.fold(state.factor, *rows))
         return self._solved(state)

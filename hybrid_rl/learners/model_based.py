@@ -5,7 +5,7 @@ From each of B start states the policy makes H decisions in the model,
     u_t ~ pi(x_t),   x_{t+1} ~ f(x_t, u_t),   r_t, c_t = reward(x_t, u_t, x_{t+1})
 
 with c_t the chance that the episode continues. The policy maximises their soft return V_0; the
-critic learns the y_t of the first `value_steps` of the same decisions (`core.soft_return`); with
+critic learns the y_t of the first `value_steps` of the same decisions (`core.returns`); with
 none of them, from one decision, as in SAC. The start states are those of branches that go on from
 one update to the next (`core.branches`), or of the replay memory. Sources: stochastic value
 gradients (Heess et al. 2015), MAAC (Clavera et al. 2020), model-based value expansion (Feinberg et
@@ -61,9 +61,6 @@ class ModelBased(SoftActorCritic):
         if self.branch_memory % self.batch_size:
             words = f"must be 0 or a multiple of the batch, {self.batch_size}"
             raise FieldError(self, "branch_memory", words)
-        if self.branch_margin is not None and not (self.branch_steps and self.branch_memory):
-            words = "needs kept branches: branch_steps and branch_memory above 0"
-            raise FieldError(self, "branch_margin", words)
 
     @property
     def _value_steps(self) -> int:

@@ -65,10 +65,6 @@ class RegulatorLearner:
     def _weights(self, n: int, m: int) -> tuple[Array, Array]:
         """Q [n, n] and R [m, m]."""
         q, r = self.state_weights, self.action_weights
-        if len(q) > n:
-            raise ValueError(
-                f"policy_learner.state_weights={list(q)}: the planning state has {n} entries"
-            )
         q = q * n if len(q) == 1 else (*q, *[0.0] * (n - len(q)))
         R = riccati.as_weights("policy_learner.action_weights", r, m)
         return jnp.diag(jnp.array(q)), jnp.asarray(R, jnp.float32)

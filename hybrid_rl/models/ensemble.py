@@ -106,8 +106,6 @@ class Ensemble:
 
     def loss(self, params: dict[str, Any], obs: Array, action: Array, next_obs: Array) -> Array:
         """Mean [] over the members of their losses, each on its own share of [members * B, ...]."""
-        if len(obs) % self.members:
-            raise ValueError(f"{len(obs)} transitions do not divide among {self.members} members")
 
         def one(weights: Any, obs: Array, action: Array, next_obs: Array) -> Array:
             return self.model.loss({**params, "weights": weights}, obs, action, next_obs)

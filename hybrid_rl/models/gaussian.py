@@ -21,7 +21,7 @@ from jax import Array
 
 from hybrid_rl.core import statistics
 from hybrid_rl.core.lifting import check_coordinates
-from hybrid_rl.fields import FILLED, FieldError, part
+from hybrid_rl.fields import FILLED, part
 from hybrid_rl.networks import MLP, Activation, LayerNorm, Widths, apply
 from hybrid_rl.types import Spec
 
@@ -41,10 +41,6 @@ class Gaussian:
     predict: Literal["change", "state"] = "change"  # what the network predicts
 
     members: ClassVar[int] = 1  # an ensemble has more
-
-    def __post_init__(self) -> None:
-        if self.log_std_min >= self.log_std_max:
-            raise FieldError(self, "log_std_min", "must lie below log_std_max")
 
     def _net(self, out: int) -> MLP:
         return MLP(self.hidden, out, self.activation, self.layer_norm)

@@ -5,7 +5,7 @@ model's posterior and their predictions are Gaussian with noise sigma. Source: S
 Optimistic Active Exploration of Dynamical Systems, there with learned noise; Shyam et al. 2019.
 """
 
-from typing import Annotated, Protocol
+from typing import Annotated, Any, cast
 
 import jax
 import jax.numpy as jnp
@@ -13,21 +13,14 @@ from jax import Array
 
 from hybrid_rl.fields import Positive, has, part
 from hybrid_rl.protocols import Model
-from hybrid_rl.types import Params, Path, PyTree, Return, Spec
-
-
-class EnsembleModel(Model, Protocol):
-    """A model of several members, which agree where there are enough data."""
-
-    def disagreement(self, params: PyTree, x: Array, u: Array) -> Array:
-        """Standard deviation [n] of the members' predictions, in running std of the change."""
+from hybrid_rl.types import Params, Path, Return, Spec
 
 
 @part
 class Disagreement:
     """Expected information about an ensemble of models along a path."""
 
-    model: Annotated[EnsembleModel, has("disagreement", "needs an ensemble; choose model=ensemble")]
+    model: Annotated[Model, has("disagreement", "needs an ensemble; choose model=ensemble")]
     noise: Positive = 0.1  # sigma, in running standard deviations of the change
 
     def init(self, spec: Spec) -> tuple[()]:
@@ -42,7 +35,9 @@ class Disagreement:
 
     def rewards(self, params: Params, path: Path) -> Array:
         """Information [T] of each decision of path, x [T+1, n] and u [T, m]."""
-        std = jax.vmap(self.model.disagreement, (None, 0, 0))(params.model, path.x[:-1], path.u)
+        std = jax.vmap(cast(Any, self.model).disagreement, (None, 0, 0))(
+            params.model, path.x[:-1], path.u
+        )
         return 0.5 * jnp.sum(jnp.log1p((std / self.noise) ** 2), -1)
 
     def reward_to_go(self, params: Params, path: Path) -> Array:

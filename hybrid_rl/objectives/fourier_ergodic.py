@@ -3,7 +3,7 @@
 c_k averages over the path and the earlier states of the episode, of which each decision forgets a
 share 1 - f: f = 0 counts the path alone, as the thesis prints it. phi_k is estimated at the same N
 uniform points as the KL-ergodic measure. The volume of the domain makes J a pure number. See
-core.fourier.
+core.ergodic.
 """
 
 from dataclasses import replace
@@ -13,7 +13,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import fourier
+from hybrid_rl.core import ergodic
 from hybrid_rl.core.domain import Box
 from hybrid_rl.fields import Count, Fraction, NotNegative, part
 from hybrid_rl.protocols import Target
@@ -39,9 +39,6 @@ class FourierErgodic:
     share: Fraction = 0.0  # of the uniform density in p; 1: coverage
     forget: Fraction = 1.0  # f, the weight that earlier states keep per decision
 
-    def __post_init__(self) -> None:
-        self.domain.check_target(self)
-
     def init(self, spec: Spec) -> FourierState:
         """An empty memory."""
         return FourierState(jnp.zeros(self.modes**self.domain.size), jnp.zeros(()))
@@ -54,10 +51,10 @@ class FourierErgodic:
         log_p = jax.vmap(self.target.log_density, (None, 0))(params, s)
         p = (1 - self.share) * jax.nn.softmax(log_p) + self.share / self.samples
         phi = p @ self.features(s)
-        weights = fourier.decay(self.domain.size, self.modes)
+        weights = ergodic.fourier_decay(self.domain.size, self.modes)
 
         def value(path: Path) -> Array:
-            apart = fourier.metric(self.average(memory, path), phi, weights)
+            apart = ergodic.fourier_metric(self.average(memory, path), phi, weights)
             outside = self.domain.outside(self.domain.of(path.x))
             return -self.domain.volume * apart - self.barrier * outside
 
@@ -75,7 +72,7 @@ class FourierErgodic:
 
     def features(self, s: Array) -> Array:
         """F_k [M, K^v] at s [M, v]."""
-        return fourier.features(s, self.domain.low, self.domain.high, self.modes)
+        return ergodic.cosines(s, self.domain.low, self.domain.high, self.modes)
 
     def average(self, memory: FourierState, path: Path) -> Array:
         """c_k [K^v] of the states in memory and in `path`."""

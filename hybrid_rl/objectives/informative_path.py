@@ -34,9 +34,6 @@ class InformativePath:
     barrier: NotNegative = 0.0  # b, cost of leaving the domain, in its sides
     share: Fraction = 0.0  # of the uniform density in g; 1: coverage
 
-    def __post_init__(self) -> None:
-        self.domain.check_target(self)
-
     @property
     def points(self) -> Array:
         """s [N, v], the same at every decision."""

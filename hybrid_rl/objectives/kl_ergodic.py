@@ -18,7 +18,7 @@ from jax import Array
 
 from hybrid_rl.core import ergodic
 from hybrid_rl.core.domain import Box
-from hybrid_rl.fields import Count, FieldError, Fraction, Natural, NotNegative, Positive, part
+from hybrid_rl.fields import Count, Fraction, Natural, NotNegative, Positive, part
 from hybrid_rl.protocols import Target
 from hybrid_rl.types import Params, Path, Return, Spec
 
@@ -42,11 +42,6 @@ class KLErgodic:
     floor: NotNegative = 0.0  # added to q [uniform density]: distant regions attract less
     barrier: NotNegative = 0.0  # b, cost of leaving the domain, in its sides
     share: Fraction = 0.0  # of the uniform density in p; 1: coverage
-
-    def __post_init__(self) -> None:
-        self.domain.check_target(self)
-        if len(self.variance) not in (1, self.domain.size):
-            raise FieldError(self, "variance", "must be 1 or v numbers")
 
     @property
     def _variance(self) -> Array:

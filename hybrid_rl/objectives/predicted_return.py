@@ -26,10 +26,6 @@ class PredictedReturn:
     critic: Critic | None = None  # with `policy`: adds the value of the last state
     policy: Policy | None = None
 
-    def __post_init__(self) -> None:
-        if (self.critic is None) != (self.policy is None):
-            raise ValueError("objective.critic and objective.policy: give both or neither")
-
     def init(self, spec: Spec) -> tuple[()]:
         """No memory: earlier rewards do not affect decisions."""
         return ()
@@ -47,7 +43,8 @@ class PredictedReturn:
         each = jax.vmap(self.reward.outcome, (None, 0, 0, 0))
         rewards, ends = each(params, before, path.u, after)  # [T] each
         last = jnp.zeros(())
-        if self.critic is not None and self.policy is not None:
+        if self.critic is not None:
+            assert self.policy is not None
             x = policy_input(jax.tree.map(lambda leaf: leaf[-1], path.x))
             last = self.critic.value(params.critic, x, self.policy.mean(params.policy, x))
         goes_on = self.discount * jax.nn.sigmoid(-ends)

@@ -20,7 +20,7 @@ from jax import Array
 from hybrid_rl.core import statistics
 from hybrid_rl.core.squashing import Squashed
 from hybrid_rl.data import archive
-from hybrid_rl.fields import FieldError, part
+from hybrid_rl.fields import part
 from hybrid_rl.networks import MLP, Activation, Perceptron, Widths, apply, outputs, perceptron
 from hybrid_rl.protocols import Env
 from hybrid_rl.types import Spec
@@ -36,10 +36,6 @@ class TanhGaussian(Squashed):
     log_std_min: float = -5.0
     log_std_max: float = 2.0
     normalise: bool = False
-
-    def __post_init__(self) -> None:
-        if self.log_std_min >= self.log_std_max:
-            raise FieldError(self, "log_std_min", "must lie below log_std_max")
 
     def _net(self, out: int, activation: str | None = None) -> MLP:
         return MLP(self.hidden, out, activation or self.activation)
@@ -93,9 +89,7 @@ class StartedGaussian(TanhGaussian):
     episode: Mapping[str, int] | None = None  # with `action_repeat`; None: 1
 
     def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.world is None:
-            raise FieldError(self, "world", "must be the environment")
+        assert self.world is not None  # a default, as fields before it have one
         self.init(jax.random.key(0), self.world.spec)
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:

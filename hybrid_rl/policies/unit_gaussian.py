@@ -13,7 +13,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core.squashing import Squashed, sampled
-from hybrid_rl.fields import FieldError, part
+from hybrid_rl.fields import part
 from hybrid_rl.networks import Widths, normalised
 from hybrid_rl.networks.normalised import NormalisedNet
 from hybrid_rl.types import Spec
@@ -29,8 +29,6 @@ class UnitGaussian(Squashed):
 
     def __post_init__(self) -> None:
         normalised.check(self)
-        if self.log_std_min >= self.log_std_max:
-            raise FieldError(self, "log_std_min", "must lie below log_std_max")
 
     def _net(self, out: int) -> NormalisedNet:
         return NormalisedNet(self.hidden[0], len(self.hidden), out)

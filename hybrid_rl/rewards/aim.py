@@ -26,10 +26,6 @@ class Aim:
         known = self.world.quantities(jnp.zeros(self.world.spec.obs))
         if self.quantity not in known:
             raise FieldError(self, "quantity", f"choose one of {', '.join(known)}")
-        size = known[self.quantity].size
-        if size != jnp.asarray(self.target).size:
-            words = f"{self.quantity} needs {size} number{'s' if size > 1 else ''}"
-            raise FieldError(self, "target", words)
 
     def reward_of(self, x: Array, u: Array, after: Array) -> Array:
         """The reward [] of action u [m], which led to the observation `after` [o]."""

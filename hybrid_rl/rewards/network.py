@@ -45,7 +45,7 @@ class RewardNetwork:
     @property
     def _known(self) -> bool:
         """Whether ends are known."""
-        return self.ends and hasattr(self.rule, "ended")
+        return self.ends and getattr(self.rule, "ended", None) is not None
 
     def _net(self) -> MLP:
         out = 1 + (self.ends and not self._known)

@@ -58,15 +58,15 @@ def run_of(
         | {"run_dir": None if run_dir is None else str(run_dir), "resume": None, "logger": None}
     )
     prepare(config)  # first: a check of the user's world initialises JAX's devices
-    notes = check_world(agent.episode.env)
+    check_world(agent.episode.env)
     rounds = -(-counts["total_steps"] // agent.num_envs)
     agent.check(rounds * agent.num_envs)
     sized = replace(agent, replay=agent.replay.within(rounds, agent.num_envs))
-    run = Run(config, sized, {"full": agent.controller.greedy()}, notes)
+    run = Run(config, sized, {"full": agent.controller.greedy()})
     if run_dir is not None and checkpoint.steps(Path(run_dir) / "checkpoints"):
-        notes += _check_same(run, Path(run_dir))
+        run = replace(run, notes=_check_same(run, Path(run_dir)))
         config.resume = str(run_dir)
-    return replace(run, notes=notes)
+    return run
 
 
 def _described(agent: Agent, name: str | None) -> dict[str, Any]:

@@ -9,7 +9,7 @@ training is the cooldown of Hagele et al. 2024.
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.fields import Count, FieldError, Share, part
+from hybrid_rl.fields import Count, Share, part
 
 
 @part
@@ -19,13 +19,9 @@ class LinearDecay:
     decisions: Count | None = None  # N, of the whole run
     share: Share = 0.3
 
-    def __post_init__(self) -> None:
-        if self.decisions is None:
-            raise FieldError(self, "decisions", "must be those of the whole run")
-
     def factor(self, decisions: Array) -> Array:
         """The factor [] of learning rates, so many decisions [] into the run."""
         whole = self.decisions
-        assert whole is not None  # as __post_init__ has checked
+        assert whole is not None  # a run sets it
         left = (whole - decisions) / (self.share * whole)
         return jnp.clip(left, 0.0, 1.0)

@@ -61,7 +61,7 @@ class Run:
     config: DictConfig
     agent: Agent
     controllers: dict[str, Controller]  # mode -> controller without exploration
-    notes: tuple[str, ...] = ()  # lines about what is allowed and seldom meant
+    notes: tuple[str, ...] = ()  # lines for the console
 
     @property
     def seeds(self) -> tuple[int, ...]:
@@ -166,7 +166,7 @@ def built(config: DictConfig) -> Run:
     with _usage(config):
         parts = _on_this_machine(config)
         set_length(parts.learners, config.total_steps)
-        episode, notes, controllers = _acting(parts)
+        episode, controllers = _acting(parts)
         agent = Agent(
             episode,
             controllers["full"],
@@ -179,20 +179,20 @@ def built(config: DictConfig) -> Run:
             tuple(config.get("freeze", ())),
         )
         agent.check(rounds * config.num_envs, controllers.values())
-    return Run(config, agent, {mode: c.greedy() for mode, c in controllers.items()}, notes)
+    return Run(config, agent, {mode: c.greedy() for mode, c in controllers.items()})
 
 
-def _acting(parts: DictConfig) -> tuple[Episode, tuple[str, ...], dict[str, Controller]]:
-    """The episodes, notes about them, and the controllers as they act in training."""
+def _acting(parts: DictConfig) -> tuple[Episode, dict[str, Controller]]:
+    """The episodes, and the controllers as they act in training."""
     each = parts.controllers.items()  # after the episodes, whose reward they may hold, too
-    return *_episode(parts), {k: _instantiate(v, f"controllers.{k}") for k, v in each}
+    return _episode(parts), {k: _instantiate(v, f"controllers.{k}") for k, v in each}
 
 
 def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller], Imagination | None]:
     """The episodes of `config`, its controllers, and what learns before them."""
     with _usage(config):
         parts = _on_this_machine(config)
-        episode, _, controllers = _acting(parts)
+        episode, controllers = _acting(parts)
         before = _instantiate(parts.get("imagine"), "imagine")
     return episode, controllers, before
 
@@ -200,19 +200,19 @@ def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller], Imaginat
 def episodes(config: DictConfig) -> Episode:
     """The episodes of `config`, without its method."""
     with _usage(config):
-        return _episode(_on_this_machine(config))[0]
+        return _episode(_on_this_machine(config))
 
 
-def _episode(parts: DictConfig) -> tuple[Episode, tuple[str, ...]]:
-    """The episodes of the sections `env` and `episode`, and notes about a world of the user's."""
+def _episode(parts: DictConfig) -> Episode:
+    """The episodes of the sections `env` and `episode`."""
     env = _instantiate(parts.env, "env")
-    notes = check_world(env)
+    check_world(env)
     target = {"_target_": "hybrid_rl.training.episode.Episode", "env": env}
     given = target | _instantiate(parts.episode, "episode")
     given |= {name: _instantiate(parts.get(name) or None, name) for name in PAID}
     if isinstance(env, External | Robot):
         given |= time_limit(env, given)
-    return build_part(given, where="episode"), notes
+    return build_part(given, where="episode")
 
 
 def expert(config: DictConfig) -> Controller:

@@ -1,7 +1,5 @@
 """p(s) = sum_j w_j N(s; m_j, s_j^2 I): a known target."""
 
-from math import dist
-
 import jax
 import jax.numpy as jnp
 from jax import Array
@@ -19,25 +17,12 @@ class Mixture:
     weights: tuple[Positive, ...] = (0.5, 0.5)  # [J], up to a factor
 
     def __post_init__(self) -> None:
-        if not self.means or not all(self.means):
-            raise FieldError(self, "means", "must be lists of 1 number or more")
         for name in ("stds", "weights"):
             if len(getattr(self, name)) != len(self.means):
                 raise FieldError(self, name, "one number above 0 for each mean")
 
-    def outside(self, low: tuple[float, ...], high: tuple[float, ...]) -> bool:
-        """Whether each mean lies more than 3 of its stds away from the box [low, high], [v]."""
-        for mean, std in zip(self.means, self.stds, strict=True):
-            full = [*mean, *mean[-1:] * (len(low) - len(mean))][: len(low)]
-            nearest = [min(max(m, a), b) for m, a, b in zip(full, low, high, strict=True)]
-            if dist(full, nearest) <= 3 * std:
-                return False
-        return True
-
     def log_density(self, params: Params, s: Array) -> Array:
         """log p [] at s [v]; the last entry of a shorter mean is repeated."""
-        if max(map(len, self.means)) > len(s):
-            raise FieldError(self, "means", f"must have at most the {len(s)} entries of the domain")
         means = jnp.stack([_extended(jnp.array(mean), len(s)) for mean in self.means])
         stds = jnp.array(self.stds)
         each = -0.5 * jnp.sum((s[None] - means) ** 2, -1) / stds**2 - len(s) * jnp.log(stds)

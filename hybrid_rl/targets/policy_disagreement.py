@@ -6,30 +6,23 @@ Source: the doubt of EnsembleDAgger (Menda, Driggs-Campbell and Kochenderfer 201
 there who acts; as a choice of queries it is query by committee (Seung, Opper and Sompolinsky 1992).
 """
 
-from typing import Annotated, Protocol
+from typing import Annotated, Any, cast
 
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.fields import Positive, has, part
 from hybrid_rl.protocols import LearnedPolicy
-from hybrid_rl.types import Params, PyTree
-
-
-class Committee(LearnedPolicy, Protocol):
-    """Several policies that learn from the same data."""
-
-    def each(self, params: PyTree, x: Array) -> Array:
-        """The action of every member [members, ..., m] at x [..., n]."""
+from hybrid_rl.types import Params
 
 
 @part
 class PolicyDisagreement:
     """Proportional to the variance of the clones' actions."""
 
-    policy: Annotated[Committee, has("each", "needs policy=clones")]
+    policy: Annotated[LearnedPolicy, has("each", "needs policy=clones")]
     floor: Positive = 1e-8  # of the variance
 
     def log_density(self, params: Params, s: Array) -> Array:
         """log p [] at the planning state s [n], up to a constant."""
-        return jnp.log(self.policy.each(params.policy, s).var(0).sum() + self.floor)
+        return jnp.log(cast(Any, self.policy).each(params.policy, s).var(0).sum() + self.floor)

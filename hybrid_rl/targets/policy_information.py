@@ -12,7 +12,7 @@ eq. (4.5)-(4.6) (`inverse`) and (6.28) (`trace`), with sigma^-2 where (6.28) has
 is ours.
 """
 
-from typing import Annotated, Any, Literal, Protocol
+from typing import Annotated, Any, Literal, cast
 
 import jax.numpy as jnp
 from jax import Array
@@ -22,17 +22,7 @@ from hybrid_rl.core.domain import Box
 from hybrid_rl.fields import Positive, check, has, part
 from hybrid_rl.networks import precision
 from hybrid_rl.protocols import Balanced, BalancedEnv, LearnedPolicy
-from hybrid_rl.types import Params, PyTree
-
-
-class UnsquashedPolicy(LearnedPolicy, Protocol):
-    """A policy that squashes the outputs of a network; "weights" is an entry of its parameters."""
-
-    def unsquashed(self, params: PyTree, x: Array) -> Array:
-        """The mean [..., m] before squashing, at x [..., n]."""
-
-    def layers(self, params: PyTree, x: Array) -> tuple[Array, Array]:
-        """The features [..., h] of which that mean is an affine function, and the mean."""
+from hybrid_rl.types import Params
 
 
 @part
@@ -43,7 +33,7 @@ class PolicyInformation:
     equilibrium values.
     """
 
-    policy: Annotated[UnsquashedPolicy, has("unsquashed", "needs policy=deterministic")]
+    policy: Annotated[LearnedPolicy, has("unsquashed", "needs policy=deterministic")]
     world: BalancedEnv | None = None  # of the equilibrium
     domain: Box | None = None
     criterion: Literal["trace", "inverse", "gain"] = "gain"  # c
@@ -58,7 +48,7 @@ class PolicyInformation:
         """I(x) [P] at the planning state x [n]."""
 
         def mu(weights: Any) -> Array:
-            return self.policy.unsquashed({**params.policy, "weights": weights}, x)
+            return cast(Any, self.policy).unsquashed({**params.policy, "weights": weights}, x)
 
         with precision.using("float32"):
             F = fisher.jacobian(mu, params.policy["weights"])

@@ -144,16 +144,16 @@ class Program:
 
     def _physics(self, target: str, x: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
         """The state after MuJoCo's steps, and the fields of MjData that the call reads."""
-        called = native.call_of(target)
-        if called is None or called.fields:
+        asset, _, steps, reads, fields = target.removeprefix(native.NAME).rsplit(":", 4)
+        if not target.startswith(native.NAME) or fields:
             raise ValueError(f"{target}: is no step of a model of MuJoCo that stays as it is")
-        names = list(called.reads)
-        if mjcf.load(called.asset).nsensordata:
+        names = [name for name in reads.split(",") if name]
+        if mjcf.load(asset).nsensordata:
             if not names:
-                raise ValueError(f"{called.asset}: has sensors, which the page does not read")
+                raise ValueError(f"{asset}: has sensors, which the page does not read")
             names = ["sensordata", *names]
-        self.assets[called.asset] = None
-        inputs = [f"[{', '.join(_text(x))}]", str(called.steps)]
+        self.assets[asset] = None
+        inputs = [f"[{', '.join(_text(x))}]", steps]
         inputs += [json.dumps(names)] if names else []
         y = self._statement(f"physics({', '.join(inputs)})")
         return _symbols([f"{y}[{i}]" for i in range(shape[0])], shape)

@@ -197,18 +197,6 @@ def test_one_or_two_particles_have_a_determinant_of_zero(few) -> None:
     assert float(jax.jit(belief.gain)(one, at)) < 1e-6
 
 
-def test_a_disc_in_the_middle_does_not_tell_the_angle() -> None:
-    """Its position is found; the angle stays uniform."""
-    disc = KnownMap(ContactPlane(objects=((0.5, 0.5, 0, 0.15, 0.15, 0.15),)), 0.03, 0.05, 0.95)
-    belief = replace(BELIEF, map=disc)
-    s, _ = measurements()
-    y = (np.hypot(*(s - TRUE[:2]).T) < 0.18).astype(np.float32)
-    for report in estimated(belief, (s, y)):
-        position = [report[f"belief/mean_{axis}"] for axis in "xy"]
-        np.testing.assert_allclose(position, TRUE[:2], atol=0.03)
-        assert report["belief/spread_angle"] > 2  # [rad]; of a uniform angle it is unbounded
-
-
 def test_a_full_memory_takes_no_more_measurements() -> None:
     belief = replace(BELIEF, particles=20, capacity=2)
     state = jax.jit(partial(belief.init, spec=SPEC))(jax.random.key(0))

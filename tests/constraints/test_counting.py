@@ -1,16 +1,11 @@
 """What an episode counts, what a learner is paid, and what a run and its evaluation report."""
 
-import json
-
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 import small
-from tiny import call, run
 
-from hybrid_rl import evaluate
-from hybrid_rl.cli import command
 from hybrid_rl.constraints.effort import Effort
 from hybrid_rl.constraints.limit import Limit
 from hybrid_rl.controllers.constant import ConstantController
@@ -18,8 +13,6 @@ from hybrid_rl.data.replay import Replay
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.errors import UsageError
 from hybrid_rl.outside.loops import loop_of
-from hybrid_rl.run.retarget import retargeted
-from hybrid_rl.run.saved import load
 from hybrid_rl.run.start import _rewritten
 from hybrid_rl.settings import build as config
 from hybrid_rl.training.episode import Episode
@@ -92,42 +85,6 @@ def test_learners_are_paid_less_and_the_return_stays() -> None:
     np.testing.assert_array_equal(metrics["world/violation"][:20, 0], broken)
     again = _rewritten(built.agent, state.memory, relabelled=True)  # of a run that begins with it
     np.testing.assert_allclose(again.rows[0, :20, 0, o + m], reward, rtol=1e-4)
-
-
-@pytest.fixture(scope="module")
-def trained(tmp_path_factory):
-    """A small run without a constraint."""
-    folder = tmp_path_factory.mktemp("trained") / "run"
-    method = ["algo=hybrid_stochastic", "learning=replay"]
-    run(folder, *method, "episode.steps=20", "total_steps=300", "eval_modes=[policy]")
-    return folder
-
-
-def test_evaluate_reports_the_violations_of_a_run(trained, capsys) -> None:
-    """In its table and its file; by the policy they are those of its own observations."""
-    given = f"run={trained} mode=policy episodes=2 constraint=speed constraint.most=2"
-    assert call(lambda: command.run(evaluate.main), *given.split()) == 0
-    assert "violations" in capsys.readouterr().out
-    file = trained / "evaluation_policy_constraint=speed_constraint.most=2.json"
-    values = json.loads(file.read_text())
-    plain = evaluate.evaluate(load(trained), "policy", 2)
-    np.testing.assert_allclose(values["returns"], plain["return"], rtol=1e-6)
-    assert values["violations"] == [np.mean(values["violated"])]
-    assert values["violations"][0] > 0
-
-
-@pytest.mark.parametrize("more", ["", " reward=aim reward.quantity=height", " planner=sampling"])
-def test_a_run_plans_with_a_constraint_with_and_without_a_reward(trained, more) -> None:
-    """The gradient planner gets it, and maximises the run's own objective or the new one."""
-    words = f"constraint=speed constraint.chance=0.2{more}".split()
-    got = retargeted(load(trained), words)
-    assert got.episode.constraint.chance == 0.2
-    planner = got.controllers["full"]
-    own = load(trained).controllers["full"].objective
-    assert (planner.objective == own) == ("reward=" not in more)
-    if "sampling" not in more:
-        assert planner.constraint == got.episode.constraint
-    assert got.controllers["planner"].constraint == got.episode.constraint
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,6 @@ import pytest
 from jax import Array
 from toys import Acting, begun
 
-from hybrid_rl.constraints.effort import Effort
 from hybrid_rl.constraints.limit import Limit
 from hybrid_rl.controllers.gradient import Candidate, GradientController, Risk
 from hybrid_rl.core.rollout import Priced, predict_members
@@ -51,9 +50,9 @@ class Sledge:
 
 WORLD, FULL = Sledge(), Acting(1.0)
 LIMIT = Limit(WORLD, "speed", 1.0, width=0.02, price=100.0)
-PLANNER = GradientController(
-    Exact(WORLD), PredictedReturn(KnownReward(WORLD)), horizon=6, tail=0, noise=0.5, quiet=0.0
-)
+SMALL: dict[str, Any] = {"horizon": 6, "tail": 0, "samples": 12, "refined": 2, "iterations": 3}
+OBJECTIVE = PredictedReturn(KnownReward(WORLD))
+PLANNER = GradientController(Exact(WORLD), OBJECTIVE, **SMALL, noise=0.5, quiet=0.0)
 
 
 def driven(constraint: Any, given: Any = LIMIT, planner: Any = PLANNER) -> EnvState:
@@ -88,13 +87,6 @@ def test_from_beyond_the_limit_the_plan_returns() -> None:
         x = WORLD.dynamics(x, u)
     assert float(x[0]) < 1
     assert float(metrics["planner/risk"]) <= 0.2
-
-
-def test_an_effort_is_a_limit_of_the_actions() -> None:
-    effort = Effort(0.5, price=100.0)
-    states = driven(effort, effort)
-    assert float(states.clock.violations[-1]) == 0
-    assert float(states.obs[-1, 0]) > 0.2 * 0.3 * 20
 
 
 def test_the_order_of_candidates() -> None:

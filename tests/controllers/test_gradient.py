@@ -77,16 +77,6 @@ def test_noise_is_as_large_at_each_decision_and_correlated_with_that_before() ->
     np.testing.assert_allclose(np.cov(np.asarray(v).T), 0.04 * 0.8**apart, atol=0.004)
 
 
-def test_each_strength_is_drawn_with_and_without_noise() -> None:
-    """Twelve candidates, half of them quiet: three of each strength and kind."""
-    given: dict[str, Any] = {**SMALL, "samples": 12, "strengths": (1.0, 0.5), "quiet": 0.5}
-    planner = GradientController(Cart(), speed(), STEADY, **given)
-    drawn = jax.jit(planner._drawn)(planner.init(SPEC), jax.random.key(0))
-    noisy = np.asarray(drawn.v).any((1, 2))
-    for s in (1.0, 0.5):
-        assert sorted(noisy[drawn.s == s]) == [False] * 3 + [True] * 3
-
-
 def test_the_tail_sees_what_comes_after_the_plan() -> None:
     """One decision ahead, speed pays; for ten more it costs, and the policy has to brake."""
     late = Goal(lambda path: path.x[1, 1] - 3 * jnp.sum(jnp.abs(path.x[2:, 1])))

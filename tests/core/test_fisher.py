@@ -170,19 +170,3 @@ def test_an_unstable_path_does_not_overflow() -> None:
     value, slope = jax.jit(jax.value_and_grad(total))(jnp.zeros((20, 1), jnp.float32))
     assert np.isfinite(value)
     assert np.isfinite(slope).all()
-
-
-@pytest.mark.parametrize("kind", fisher.KINDS)
-def test_a_recorded_path_is_numpy_in_float64(kind) -> None:
-    """As it is, in float32 too, where such a type would be a warning."""
-
-    def step(theta: Array, x: Array, u: Array) -> Array:
-        return theta[0] * x + theta[1] * u
-
-    x, u = RNG.uniform(-1, 1, (T + 1, N)), RNG.uniform(-1, 1, (T, N))
-    with jax.enable_x64(False):
-        F = fisher.along(step, np.ones(2), Path(x, u), kind)
-        d = fisher.products(step, jnp.ones(2), Path(x, u), kind, jnp.ones(2))
-    assert F.dtype == d.dtype == jnp.float32
-    np.testing.assert_allclose(F[0], np.stack([x[0], u[0]], 1), rtol=1e-6)
-    np.testing.assert_allclose(F.sum(2), d, rtol=1e-5)

@@ -5,9 +5,9 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from hybrid_rl.envs.analytic.arrangements import GAP, draw
 from hybrid_rl.envs.analytic.contact_plane import rounded_box
 from hybrid_rl.settings import build as config
+from scripts.arrangements import GAP, draw
 
 NAMES = {"first": 1, "second": 2, "third": 3}
 SIDE = np.linspace(0, 1, 401, dtype=np.float32)

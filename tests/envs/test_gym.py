@@ -1,19 +1,13 @@
 """The ids under which Gymnasium finds the environments, and their time limits."""
 
-import shutil
-import subprocess
-import sys
-
 import gymnasium
 import numpy as np
 import pytest
 from test_gymnasium import play
 from worlds import OWN_TEST, TASKS
 
-from hybrid_rl.envs import gym
 from hybrid_rl.envs.adapters.gymnasium import GymnasiumEnv, GymnasiumVectorEnv
 from hybrid_rl.envs.analytic.two_link import TwoLink
-from hybrid_rl.settings import build as config
 
 pytestmark = pytest.mark.turns(2)
 
@@ -28,19 +22,11 @@ def test_every_task_has_an_id_and_its_time_limit():
     assert gymnasium.spec("hybrid_rl/Cartpole").max_episode_steps == 2 * 500
     assert GymnasiumEnv(TwoLink()).steps == GymnasiumVectorEnv(TwoLink(), 2).steps == 200
 
+    class Mine(TwoLink):
+        pass
 
-def test_a_task_that_is_not_written_out_has_no_time_limit(tmp_path, monkeypatch):
-    shutil.copy(config.CONF / "task" / "pendulum.yaml", tmp_path)
-    crane = "defaults: [/task@_global_: pendulum, _self_]\nenv: {_target_: crane.Crane}\n"
-    (tmp_path / "crane.yaml").write_text(crane)
-    monkeypatch.setattr(gym, "TASKS", tmp_path)
-    found = gym.limits.__wrapped__()
-    assert found == {"hybrid_rl.envs.analytic.pendulum.Pendulum": 200}
-
-
-def test_the_ids_are_registered_without_jax():
-    code = "import sys, hybrid_rl.envs.gym; sys.exit('jax' in sys.modules)"
-    assert subprocess.run([sys.executable, "-c", code]).returncode == 0
+    with pytest.raises(ValueError, match="steps: Mine has no time limit of its own; give steps=N"):
+        GymnasiumEnv(Mine())
 
 
 def test_an_id_takes_the_fields_of_its_environment():
@@ -52,12 +38,3 @@ def test_an_id_takes_the_fields_of_its_environment():
     envs = gymnasium.make_vec("hybrid_rl/TwoLink", num_envs=2, **long)
     ended = [truncated.all() for _, _, _, truncated, _ in play(envs, 0, 4)]
     assert (envs.env.success_distance, ended) == (1.0, [False, False, False, True])
-
-
-def test_an_environment_of_another_package_needs_a_time_limit():
-    class Mine(TwoLink):
-        pass
-
-    with pytest.raises(ValueError, match="steps: Mine has no time limit of its own; give steps=N"):
-        GymnasiumEnv(Mine())
-    assert GymnasiumEnv(Mine(), steps=7).steps == 7

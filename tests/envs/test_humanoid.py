@@ -92,12 +92,3 @@ def test_the_contact_cost_is_at_most_ten(theirs):
     _, reward, _, _, info = theirs.step(np.zeros(17))
     assert info["reward_contact"] == -10.0
     np.testing.assert_allclose(after.reward, reward, atol=0.1)
-
-
-def test_short_is_the_beginning_of_full():
-    key, action = jax.random.key(1), jnp.full(17, 0.5)
-    short, full = (
-        jitted(env, "step")(jitted(env, "reset")(key), action) for env in (Humanoid("native"), FULL)
-    )
-    np.testing.assert_array_equal(short.obs, full.obs[:45])
-    np.testing.assert_array_equal(short.reward, full.reward)

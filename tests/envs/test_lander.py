@@ -5,10 +5,9 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from scipy.linalg import solve_discrete_are
-from worlds import follow, jitted, shown
+from worlds import follow, jitted
 
 from hybrid_rl.envs.analytic.lander import DT, Lander
-from hybrid_rl.envs.analytic.state import fully_observed
 from hybrid_rl.policies.regulator import Regulator
 
 ENV = Lander()
@@ -79,12 +78,3 @@ def test_a_flip_begins_around_the_hover_and_a_hover_at_rest() -> None:
     np.testing.assert_allclose(x.mean(0), 0, atol=0.02)
     np.testing.assert_allclose(np.cov(x.T), 0.1 * np.eye(6), atol=0.01)
     np.testing.assert_array_equal(Lander("hover").reset(keys[0]).obs, 0)
-
-
-def test_the_scene_shows_the_angle() -> None:
-    """A quarter turn to the left: the vehicle's axis points to -x, its right side up."""
-    x = jnp.array([0.4, 0.3, jnp.pi / 2, 0.0, 0.0, 0.0])
-    data = shown(ENV, fully_observed(x, jnp.zeros(())))
-    np.testing.assert_allclose(data.body("lander").xpos, [0.4, 0, 0.3], atol=1e-6)
-    np.testing.assert_allclose(data.body("lander").xmat.reshape(3, 3)[:, 2], [-1, 0, 0], atol=1e-6)
-    assert data.geom("right").xpos[2] > 0.3

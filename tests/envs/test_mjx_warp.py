@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from worlds import BROKEN, LIFTED, OTHER, TOUCHING, make, reference, rollout
 
-from hybrid_rl.envs.hopper import Hopper
 from hybrid_rl.envs.mujoco.physics import Physics
 
-pytestmark = pytest.mark.turns(2)
+pytestmark = pytest.mark.turns(4)
 
 
 @pytest.fixture(scope="module")
@@ -36,18 +35,6 @@ def test_reads_what_mujoco_c_computes(env):
     for name in names:
         native, warp = (body.read(s, name) for body, s in zip(bodies, after, strict=True))
         np.testing.assert_allclose(warp, native, atol=1e-4)
-
-
-def test_a_changed_body_moves_as_in_mujoco_c(env):
-    change = {"mass": 1.5, "friction": 0.5, "motors": (1.0, 0.3, 1.0), "payload": 2.0}
-    first = env.reset(jax.random.key(0))
-    after = []
-    for each in (Hopper("native"), *(Hopper(name, **change) for name in ("native", "warp"))):
-        state = first.replace(data=each.reset(jax.random.key(0)).data)
-        after.append(jax.jit(each.step)(state, jnp.ones(3)).obs)
-    nominal, native, warp = after
-    np.testing.assert_allclose(warp, native, atol=1e-4)
-    assert np.abs(native - nominal).max() > 0.1
 
 
 def test_nan_stays_in_its_lane(env):

@@ -65,13 +65,6 @@ def test_programs_run_at_the_same_time():
             np.testing.assert_array_equal(got.qpos, alone.qpos)
 
 
-def test_the_number_of_threads_changes_nothing():
-    state, ctrl = _states(CHEETAH, 64)
-    bodies = (Physics("halfcheetah.xml", "native", threads=n) for n in (1, 2))
-    one, two = (_many(body, 5)(state, ctrl) for body in bodies)
-    np.testing.assert_array_equal(one.qpos, two.qpos)
-
-
 def test_the_callback_of_other_devices_gives_the_same(monkeypatch):
     state, ctrl = _states(CHEETAH, 3)
     on_cpu = _many(CHEETAH, 4)(state, ctrl)
@@ -79,14 +72,6 @@ def test_the_callback_of_other_devices_gives_the_same(monkeypatch):
     lowered = _many.__wrapped__(CHEETAH, 4).lower(state, ctrl)
     assert "hybrid_rl.native" not in lowered.as_text()
     np.testing.assert_array_equal(lowered.compile()(state, ctrl).qpos, on_cpu.qpos)
-
-
-def test_a_saved_state_continues_with_the_same_bits():
-    state, ctrl = _states(CHEETAH, 2)
-    half = _many(CHEETAH, 10)
-    whole = _many(CHEETAH, 20)(state, ctrl)
-    saved = jax.tree.map(np.asarray, half(state, ctrl))
-    np.testing.assert_array_equal(half(jax.tree.map(jnp.asarray, saved), ctrl).qpos, whole.qpos)
 
 
 def test_only_a_diverged_environment_is_nan():

@@ -3,21 +3,8 @@
 import jax
 import jax.numpy as jnp
 import numpy as np
-import pytest
 
 from hybrid_rl.envs.mujoco.physics import Physics, resolve
-
-
-@pytest.mark.parametrize("asset", ["halfcheetah.xml", "panda_stack.xml"])
-def test_a_reset_without_sensors_but_of_forces_calls_no_mujoco(asset):
-    """Its state is float32."""
-    body = Physics(asset, "native")
-    qpos, qvel = body.model.qpos0, jnp.zeros(body.model.nv)
-    text, state = str(jax.make_jaxpr(body.reset)(qpos, qvel)), body.reset(qpos, qvel)
-    assert "ffi_call" not in text
-    assert "callback" not in text
-    assert {leaf.dtype for leaf in jax.tree.leaves(state)} == {np.dtype("float32")}
-    assert state.sensors is None or not state.sensors.any()
 
 
 def test_auto_depends_on_the_number_of_environments(monkeypatch):

@@ -5,9 +5,8 @@ import jax.numpy as jnp
 import mujoco
 import numpy as np
 import pytest
-from worlds import along, jitted, placed, shown
+from worlds import along, jitted, placed
 
-from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.quadcopter import Quadcopter
 
 MASS, INERTIA, ARM, THRUST, MOMENT, GRAVITY = (
@@ -59,15 +58,6 @@ def test_it_follows_the_equations_of_the_thesis(damping):
     assert np.abs(expected).max() > 5
 
 
-def test_unidirectional_motors():
-    env = Quadcopter("native", bidirectional=False)
-    state = jitted(env, "reset")(jax.random.key(0))
-    for a, u in ((-1.0, 0.0), (0.0, 3.0), (1.0, 6.0)):
-        np.testing.assert_allclose(jitted(env, "step")(state, jnp.full(4, a)).data.ctrl[:4], u)
-    both = jitted(Quadcopter("native"), "step")(state, jnp.full(4, -1.0))
-    np.testing.assert_allclose(both.data.ctrl[:4], -6.0)
-
-
 def test_reward():
     env = Quadcopter("native", task="track")
     state = jitted(env, "reset")(jax.random.key(0))
@@ -97,14 +87,6 @@ def test_wind_is_a_force_on_the_body():
     np.testing.assert_allclose(last.qvel, data.qvel, atol=1e-4)
     np.testing.assert_allclose(last.qpos[:3], data.qpos[:3], atol=5e-3)  # half a step ahead
     assert data.qvel[0] > 1.0
-
-
-def test_another_asset(tmp_path):
-    file = tmp_path / "heavy.xml"
-    file.write_text(mjcf.text("quadcopter.xml").replace('mass="0.6"', 'mass="1.2"'))
-    env = Quadcopter("native", asset=str(file))
-    assert env.hovering == pytest.approx(4.905)
-    shown(env, env.reset(jax.random.key(0)))  # its scene has its joints
 
 
 def test_the_target_moves():

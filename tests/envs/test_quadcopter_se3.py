@@ -6,18 +6,13 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
-from worlds import along, follow, jitted, many, shown
+from worlds import along, follow, jitted, many
 
 from hybrid_rl.envs.analytic import quadcopter_se3 as quad
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
-from hybrid_rl.envs.analytic.state import fully_observed
 
 KEY = jax.random.key(5)
 PLAIN = QuadcopterSE3(twist=2.0, away=1.0)
-START = [  # of QuadcopterSE3(twist=2, away=1) at KEY, before it had other options
-    *(-0.83237338, -0.54157352, -0.77530575),
-    *(-0.13448048, 1.68352413, 0.94324064, -1.61967421, 1.65795851, 0.71091700),
-]
 MOTION = [0, 1, 2, *range(12, 18)]  # entries of p, v and w
 
 
@@ -87,16 +82,6 @@ def test_drag_takes_energy_and_rotations_stay_orthogonal() -> None:
     np.testing.assert_allclose(R.T @ R, np.eye(3), atol=1e-9)
 
 
-def test_options_that_are_off_change_nothing() -> None:
-    """The start is that of the version without them, and the memory is empty."""
-    off = QuadcopterSE3(twist=2.0, away=1.0, terminate=False, fault_time=0.01)
-    path, same = (fly(env, 5, np.full(4, 0.2)) for env in (PLAIN, off))
-    np.testing.assert_allclose(path.obs[0, MOTION], START, atol=1e-6)
-    np.testing.assert_array_equal(path.obs[0, 3:12], np.eye(3).ravel())
-    np.testing.assert_array_equal(path.obs, same.obs)
-    assert path.info == same.info == {}
-
-
 def test_the_start_is_turned_within_the_angles() -> None:
     """Euler angles as SciPy extracts them; position and twist are those of an upright start."""
     keys = jax.random.split(KEY, 500)
@@ -132,9 +117,3 @@ def test_upside_down_ends_the_episode_only_if_it_should() -> None:
     np.testing.assert_array_equal(path.terminated, path.data[:, 11] < 0)
     np.testing.assert_array_equal(path.data, after.data)
     assert not after.terminated.any()
-
-
-def test_its_scene_shows_the_rotation() -> None:
-    x = twisted()
-    frame = shown(QuadcopterSE3(), fully_observed(jnp.asarray(x), jnp.zeros(()))).body("frame")
-    np.testing.assert_allclose(frame.xmat, x[3:12], atol=1e-5)

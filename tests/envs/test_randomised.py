@@ -4,13 +4,11 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-import small
 from worlds import make
 
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.cartpole import Cartpole
 from hybrid_rl.envs.halfcheetah import HalfCheetah
-from hybrid_rl.settings import build as config
 from hybrid_rl.training.episode import Episode
 
 FIXED = {"mass": [1.5, 1.5], "friction": [0.5, 0.5], "motors": [0.8, 0.8], "payload": [0.4, 0.4]}
@@ -55,14 +53,6 @@ def test_each_episode_and_each_motor_has_its_own_and_keeps_it():
         np.testing.assert_array_equal(after.data.fields[name], value)
 
 
-def test_what_is_not_drawn_stays_that_of_the_model_and_the_start_is_the_same():
-    plain = Cartpole("native")
-    state = Episode(plain, randomise={"mass": (0.5, 2.0), "motors": None}).reset(jax.random.key(3))
-    assert {*state.data.fields} == {"body_mass", "body_inertia"}
-    np.testing.assert_array_equal(state.obs, Episode(plain).reset(jax.random.key(3)).obs)
-    assert not Episode(plain, randomise={"mass": None}).reset(jax.random.key(3)).data.fields
-
-
 @pytest.mark.parametrize(
     ("env", "given", "line"),
     [
@@ -74,9 +64,3 @@ def test_what_is_not_drawn_stays_that_of_the_model_and_the_start_is_the_same():
 def test_ranges_that_cannot_be_drawn_are_refused(env, given, line):
     with pytest.raises(ValueError, match=line):
         Episode(env, randomise=given)
-
-
-def test_a_decision_of_a_drawn_body_keeps_the_shape_of_its_state():
-    small.trace(
-        config.build(small.load("sac", "task=cartpole", "episode.randomise.mass=[0.5,2]")).agent
-    )

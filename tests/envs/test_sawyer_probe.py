@@ -91,25 +91,3 @@ def test_the_objects_of_the_model_are_those_of_the_distance() -> None:
         want = float(distance(jnp.asarray(s, jnp.float32), jnp.array(POSE))) - WORLD.radius
         if want > 0:
             assert got == pytest.approx(want, abs=5e-4)
-
-
-def test_it_is_drawn_where_the_tip_was_observed(paths) -> None:
-    """From the arm's own angles, and from those of another position."""
-    _, _, states = paths
-    here, there = (jax.tree.map(lambda a, t=t: a[0, t], states) for t in (5, 10))
-    np.testing.assert_allclose(WORLD.pose(here), here.data.qpos, atol=0.02)
-    moved = jitted(TIP, "pose")(WORLD.pose(here.replace(obs=there.obs)))[0]
-    np.testing.assert_allclose(moved[:2], there.obs[:2], atol=5e-4)
-    model = mujoco.MjModel.from_xml_string(WORLD.scene())
-    assert model.nq == 7
-    assert model.camera("track").id >= 0
-
-
-def test_the_points_of_observations_are_those_of_the_tip(paths) -> None:
-    """The height, which is not observed, within 2 mm."""
-    _, _, states = paths
-    one = jax.tree.map(lambda a: a[0], states)
-    got = jitted(WORLD, "points")(jax.tree.map(lambda a: a[0], one), one.obs)
-    want = many(TIP, "pose")(one.data.qpos)[0]
-    np.testing.assert_allclose(got[:, 0, :2], want[:, :2], atol=1e-6)
-    np.testing.assert_allclose(got[:, 0, 2], want[:, 2], atol=2e-3)

@@ -8,10 +8,8 @@ import pytest
 from experts import EXPERTS, over_implementations, play
 from worlds import jitted, make, many, placed
 
-from hybrid_rl.envs.experts.push import PushController
 from hybrid_rl.envs.mujoco.kinematics import rotate_towards
 from hybrid_rl.envs.sawyer_push import ASSET, EXTRA, HEIGHT, HOME, TIP, SawyerPush
-from hybrid_rl.types import Params
 
 ALL = SawyerPush("native", reward="code", extra=tuple(EXTRA))
 TARGET, COMMAND = np.array([0.6, -0.1]), np.array([0.06, -0.09])
@@ -47,13 +45,6 @@ def test_all_groups_are_those_of_mujoco():
     assert ALL.spec.obs == 13
 
 
-def test_groups_are_chosen_by_name():
-    env = SawyerPush("native", extra=("tip", "command"))
-    assert env.extra == ("command", "tip")
-    state = jitted(env, "reset")(jax.random.key(0))
-    assert state.obs.shape == (env.spec.obs,) == (8,)
-
-
 def test_reward_and_end_follow_from_observations():
     env = SawyerPush("native", reward="code")
     states = many(env, "reset")(jax.random.split(jax.random.key(1), 20))
@@ -63,33 +54,6 @@ def test_reward_and_end_follow_from_observations():
     np.testing.assert_allclose(known, after.reward, rtol=1e-4)
     near = jnp.array([[1.0, 1.0, 0.3, -0.41], [1.0, 1.0, 0.3, -0.39]])  # 5.08 and 4.92 cm
     assert jax.vmap(env.ended)(near).tolist() == [False, True]
-
-
-@pytest.mark.parametrize("angle", [np.pi / 2, np.pi, -np.pi / 2])
-def test_a_push_is_the_same_along_all_axes(angle):
-    """The same push, turned: MuJoCo's next state is the turned one, to a fifth of the motion."""
-    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    reach, aim, u = np.array([0.04, 0.006]), np.array([0.05, -0.15]), np.array([1.0, 0.0])
-    tip = TIP.constant_pose(HOME)[0][:2]
-
-    def push(state, u):
-        still = {**state.info, "velocity": jnp.zeros(2)}
-        state = state.replace(info=still)
-        for _ in range(5):
-            state = jitted(ALL, "step")(state, jnp.float32(u))
-        return np.asarray(state.obs)
-
-    straight = push(scene(reach=reach, target=tip + aim), u)
-    there = push(scene(turn=angle, reach=turn @ reach, target=tip + turn @ aim), turn @ u)
-    pushed = np.linalg.norm(straight[2:4] - 10 * (reach - aim))
-    assert pushed > 0.1  # 1 cm
-    expected = np.asarray(jitted(ALL, "turned")(straight, angle))
-    np.testing.assert_allclose(there[:4], expected[:4], atol=0.2 * pushed)
-    np.testing.assert_allclose(there[4:6], expected[4:6], atol=1e-4)
-    turns = [np.arctan2(obs[7], obs[6]) for obs in (there, expected)]
-    spun = np.arctan2(straight[7], straight[6])
-    assert abs(spun) > 0.4  # 0.1 rad
-    assert abs(turns[0] - turns[1]) < 0.2 * abs(spun)
 
 
 def test_the_heading_is_the_side_that_faces_the_rod():
@@ -102,14 +66,6 @@ def test_the_heading_is_the_side_that_faces_the_rod():
         heading = float(jitted(ALL, "heading")(obs))
         assert abs(np.sin(2 * (heading - turn))) < 1e-4  # a multiple of 90 degrees
         assert np.cos(rod - heading) > np.cos(np.pi / 4) - 1e-5
-
-
-def test_the_expert_acts_on_the_positions_whatever_else_is_observed():
-    state = scene(turn=0.4, velocity=(0.05, 0.02))
-    key, memory = jax.random.key(0), jnp.array([0.05, -0.02])
-    action, *_ = PushController().act(Params(), memory, state.obs, key)
-    alone, *_ = PushController().act(Params(), memory, state.obs[:4], key)
-    np.testing.assert_array_equal(action, alone)
 
 
 def test_the_rod_follows_its_velocity_command():

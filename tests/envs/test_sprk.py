@@ -123,11 +123,3 @@ def test_mujoco_measures_the_distance_to_rounded_boxes() -> None:
         got = min(mujoco.mj_geomDistance(model, data, ball, i, 9.0, None) for i in parts)
         if want > env.radius:
             assert got + env.radius == pytest.approx(float(want), abs=1e-5)
-
-
-def test_a_ball_takes_the_objects_of_the_contact_plane() -> None:
-    """As its experiments give them: with the same values it has the same box and pose."""
-    fields = {"objects": (DISC,), "theta": POSE, "spread": (0.1, 0.1, 3.0), "drag": 0.3}
-    plane, ball = ContactPlane(**fields), Sprk("native", **fields)
-    for name in ("objects", "low", "high", "drag", "theta", "spread", "false_contact"):
-        assert getattr(ball, name) == getattr(plane, name)

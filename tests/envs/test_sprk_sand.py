@@ -2,14 +2,12 @@
 
 import jax
 import jax.numpy as jnp
-import mujoco
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from worlds import along, jitted, many
+from worlds import along, jitted
 
-from hybrid_rl.envs.analytic.sprk_sand import CLOCK, DT, Ball, SprkSand
-from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.envs.analytic.sprk_sand import DT, Ball, SprkSand
 
 KEY = jax.random.key(3)
 EXACT = SprkSand(learn=30, sensor_noise=0.0)
@@ -84,15 +82,6 @@ def test_noise_is_that_of_a_camera() -> None:
     np.testing.assert_array_equal(path.obs[0, 2:4], 0)
 
 
-def test_the_start_does_not_depend_on_the_noise() -> None:
-    keys = jax.random.split(KEY, 300)
-    p = np.asarray(many(EXACT, "reset")(keys).data.p)
-    np.testing.assert_array_equal(p, many(NOISY, "reset")(keys).data.p)
-    away = p - [1.62, 0.85]
-    assert 0.09 < np.abs(away).max() <= 0.1 + 1e-6
-    assert SprkSand(sensor_noise=0.0).reset(KEY).info.keys() == {CLOCK}
-
-
 def test_reward_and_tracking_error() -> None:
     """The thesis' weights, of the state after the decision."""
     still = Ball(jnp.array([1.0, 1.0]), jnp.zeros(2), jnp.zeros(2))
@@ -100,16 +89,3 @@ def test_reward_and_tracking_error() -> None:
     e = np.concatenate([after.data.p - np.array([1.62, 0.85]), after.data.v])
     assert after.metrics["tracking_error"] == pytest.approx(np.hypot(e[0], e[1]), rel=1e-5)
     assert after.reward == pytest.approx(-(e**2) @ [60, 60, 5, 5] - 0.1, rel=1e-5)
-
-
-def test_the_scene_shows_the_curve_and_the_reference() -> None:
-    model = mjcf.load("sprk_sand.xml")
-    in_the_world = model.geom_bodyid == 0
-    dots = model.geom_pos[in_the_world & (model.geom_type == mujoco.mjtGeom.mjGEOM_SPHERE)]
-    x, y = (dots[:, 0] - 1.12) / 0.5, (dots[:, 1] - 0.85) / 0.3
-    np.testing.assert_allclose(y**2, 4 * x**2 * (1 - x**2), atol=2e-3)  # sin 2t = 2 sin t cos t
-    path = roll(EXACT, np.ones((60, 2)))
-    poses = np.asarray(many(EXACT, "pose")(path))
-    np.testing.assert_array_equal(poses[:, :2], path.data.p)
-    np.testing.assert_allclose(poses[:, 2:], path.obs[:, 4:6], atol=1e-6)
-    assert np.ptp(poses[:, 3]) > 0.2

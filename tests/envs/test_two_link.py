@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import mujoco
 import numpy as np
 import pytest
-from worlds import follow, jitted, placed, shown, simulated
+from worlds import follow, jitted, placed, simulated
 
 from hybrid_rl.envs.analytic import two_link
 from hybrid_rl.envs.analytic.two_link import TwoLink
@@ -72,11 +72,3 @@ def test_success_is_within_its_distance(away, success) -> None:
     assert after.metrics["distance"] == pytest.approx(away * np.sqrt(2), abs=1e-5)
     assert after.metrics["success"] == success
     assert after.reward == pytest.approx(-30 * away**2, rel=1e-3)
-
-
-def test_its_scene_shows_the_tips_of_the_arm_and_of_its_target() -> None:
-    state = ARM.reset(jax.random.key(0)).replace(data=jnp.array([0.4, 0.0, 0.5, 0.0]))
-    data = shown(ARM, state)
-    for name, (a, b) in (("tip", (0.4, 0.5)), ("tip_target", np.asarray(state.info["target"]))):
-        tip = 0.1 * np.array([np.cos(a) + np.cos(a + b), np.sin(a) + np.sin(a + b)])
-        np.testing.assert_allclose(data.geom(name).xpos[:2], tip, atol=1e-6)

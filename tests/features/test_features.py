@@ -67,5 +67,5 @@ def test_the_lift_of_sawyer_has_the_printed_functions() -> None:
 def test_features_of_another_robot_are_refused() -> None:
     """Sawyer has more coordinates than the ball."""
     composed = config.load(["task=sprk_sand", "algo=koopman_track", "features=sawyer"])
-    with pytest.raises(UsageError, match=r"features\.coordinates=.*: .* has entries 0 to 11"):
+    with pytest.raises(UsageError, match=r"features\.coordinates=.*: .* entries 0 to 11"):
         config.build(composed)

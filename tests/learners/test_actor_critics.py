@@ -91,25 +91,6 @@ def test_the_temperature_meets_its_target() -> None:
     assert mean == pytest.approx(0.5, abs=0.1)
 
 
-@pytest.mark.parametrize("normalise", [False, True])
-@pytest.mark.parametrize("name", ["sac", "ddpg"])
-def test_the_policy_normalises_states_by_the_batches(name: str, normalise: bool) -> None:
-    """With `normalise` the statistics are those of the batches; gradients do not change them."""
-    made = replace(learner(name), policy=TanhGaussian(hidden=(8,), normalise=normalise))
-
-    def far(key: Array) -> Batch:
-        x = 50 + 200 * jax.random.normal(key, (B, 1))
-        return batch(key)._replace(obs=x, next_obs=x)
-
-    state, _ = learned(made, SPEC, far, 200)
-    targets = [state.target_policy] if name == "ddpg" else []
-    for policy in (state.policy, *targets):
-        assert ("state" in policy) == normalise
-        if normalise:
-            assert float(policy["state"].mean[0]) == pytest.approx(50, abs=10)
-            assert float(policy["state"].std[0]) == pytest.approx(200, rel=0.05)
-
-
 def test_scaled_values_begin_at_zero_and_reach_large_returns() -> None:
     """In 100 updates a scaled critic has learned most of a return of 1,000, another one little."""
 

@@ -72,27 +72,3 @@ def test_the_loss_and_its_gradient_are_those_of_episodes() -> None:
     assert float(metrics["analytic/gradient_norm"]) == pytest.approx(
         float(jnp.linalg.norm(exact)), rel=1e-4
     )
-
-
-def test_it_learns_to_lead_a_point_mass_to_the_middle() -> None:
-    """The mean distance after 3 s, from fresh starts, is a tenth of the first one."""
-    learner = dataclasses.replace(LEARNER, horizon=30, starts=16)
-    state = begun(learner, WORLD.spec)
-
-    @jax.jit
-    def run(state: Any) -> Any:
-        keys = jax.random.split(jax.random.key(2), 400)
-        return jax.lax.scan(lambda state, key: updated(learner, state, key), state, keys)[0]
-
-    policy = run(state).policy
-    first = jax.vmap(WORLD.reset)(jax.random.split(jax.random.key(3), 50))
-
-    def last(state: Any) -> jax.Array:
-        def one(state: Any, _: None) -> tuple[Any, None]:
-            return WORLD.step(state, POLICY.mean(policy, state.obs)), None
-
-        return jax.lax.scan(one, state, None, length=30)[0].obs[:2]
-
-    before, after = first.obs[:, :2], jax.vmap(last)(first)
-    distances = [np.linalg.norm(np.asarray(p) - 0.5, axis=1).mean() for p in (before, after)]
-    assert distances[1] < 0.1 * distances[0]

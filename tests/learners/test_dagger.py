@@ -9,13 +9,12 @@ import numpy as np
 import pytest
 from toys import begun
 
-from hybrid_rl.core.labels import Queried
+from hybrid_rl.core.teaching import Queried
 from hybrid_rl.errors import UsageError
 from hybrid_rl.learners.dagger import DAgger, DAggerState
 from hybrid_rl.models.exact import Exact
 from hybrid_rl.policies.deterministic import Deterministic
 from hybrid_rl.settings import build as config
-from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Batch, Params, Spec
 
 pytestmark = pytest.mark.turns(3)
@@ -30,13 +29,11 @@ POLICY = Deterministic(hidden=(8,))
 class Linear:
     """u = GAIN x."""
 
-    rows: int = 2  # of GAIN
-
     def init(self, spec: Spec) -> tuple[()]:
         return ()
 
     def act(self, params: Params, state: Any, obs: Any, key: Any) -> tuple:
-        return jnp.asarray(GAIN[: self.rows]) @ obs, state, {}
+        return jnp.asarray(GAIN) @ obs, state, {}
 
     def greedy(self) -> "Linear":
         return self
@@ -205,29 +202,6 @@ def test_the_evidence_is_a_sum_over_the_labels() -> None:
     np.testing.assert_allclose(labels.evidence, x.T @ x, rtol=0.05, atol=0.05 * 4500)
 
 
-def test_a_teacher_of_other_sizes_is_refused() -> None:
-    """Of other actions, and of other observations."""
-    with pytest.raises(ValueError, match=r"expert=Linear: decides \[1\], and must map 3 "):
-        DAgger(POLICY, Linear(rows=1)).init(jax.random.key(0), SPEC)
-    with pytest.raises(ValueError, match="expert=Linear: does not map 4 observed numbers to 2"):
-        DAgger(POLICY, Linear()).init(jax.random.key(0), SPEC._replace(obs=4))
-
-
 def test_a_task_without_an_expert_is_refused() -> None:
     with pytest.raises(UsageError, match="expert=null: this task has no expert"):
         config.build(config.load(["task=pendulum", "algo=dagger"]))
-
-
-@pytest.mark.parametrize("algo", ["dagger", "dail"])
-def test_a_resumed_run_equals_one_that_never_stopped(algo: str) -> None:
-    """All parameters, labels and records, bit for bit, from a copy of the state half-way."""
-    overrides = ["task=pendulum", "expert=regulator", f"algo={algo}", "dagger_learner.first=20"]
-    run = config.build(config.load([*overrides, "policy.hidden=[8]", "total_steps=60"]))
-    loop = Loop(run.agent, (0, 1), stride=60)
-    program = loop.compile(loop.init())
-    whole = program(loop.init(), jnp.int32(0), jnp.int32(60))[0]
-    half = program(loop.init(), jnp.int32(0), jnp.int32(30))[0]
-    stored = jax.tree.map(jnp.copy, half)
-    rest = program(loop.on_devices(stored), jnp.int32(30), jnp.int32(30))[0]
-    jax.tree.map(np.testing.assert_array_equal, whole.learners, rest.learners)
-    assert (np.asarray(whole.learners["policy"].labels.count) == 60).all()

@@ -70,12 +70,6 @@ def windows(decisions: Decisions, size: int) -> Decisions:
     return jax.tree.map(lambda x: x[starts[:, None] + np.arange(size), 0], decisions)
 
 
-def root_mean_square(learner: EmbeddingLearner, model: Any, decisions: Decisions) -> Any:
-    """Of the entries of z at the decisions."""
-    z = jax.jit(jax.vmap(learner.model.lift, (None, 0)))(model, decisions.obs[:, 0])
-    return jnp.sqrt(jnp.mean(z**2))
-
-
 def test_a_linear_world_is_embedded():
     koopman = Koopman(Network(size=4, hidden=(8,)))
     learner = EmbeddingLearner(koopman, steps=1000, learning_rate=1e-2, prior=1e-6)
@@ -85,25 +79,6 @@ def test_a_linear_world_is_embedded():
     found = np.linalg.eigvals(np.asarray(model["K"][:, :6], np.float64))
     for true in np.linalg.eigvals(A):
         assert np.abs(found - true).min() < 1e-3
-
-
-@pytest.mark.parametrize("fit", ["least_squares", "adam"])
-def test_without_the_state_in_z_the_loss_falls_with_the_norm_of_z(fit):
-    """The trivial solution z = 0 of eq. (7.12)."""
-    decisions, lengths = linear_world(400), {}
-    for include_state in (True, False):
-        features = Network(size=4, hidden=(8,), include_state=include_state)
-        learner = EmbeddingLearner(
-            Koopman(features), fit=fit, steps=200, learning_rate=3e-3, prior=0.01
-        )
-        first = learner.init(jax.random.key(0), SPEC).model
-        last = learn(learner, decisions)[0].model
-        each = [root_mean_square(learner, model, decisions) for model in (first, last)]
-        loss, part = jax.jit(learner.loss), windows(decisions, 5)
-        losses = [loss(model, part) for model in (first, last)]
-        assert losses[1] < 0.1 * losses[0]
-        lengths[include_state] = each[1] / each[0]
-    assert lengths[False] < 0.1 < 0.5 < lengths[True]
 
 
 @pytest.mark.parametrize("capacity", [1000, 300])

@@ -11,14 +11,12 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from test_extend import HOWTO, blocks
-from tiny import TINY, call_train, summary_of
 
 from hybrid_rl.critics.ensemble_q import EnsembleQ
 from hybrid_rl.policies.deterministic import Deterministic
 from hybrid_rl.types import Batch, Params, Spec
 
 CODE, METHOD = blocks("A learner of your own", HOWTO)
-FIELDS = "_target_: td3.TD3\npolicy: ${policy}\ncritic: ${critic}\ndelay: 2\nbatch_size: 8\n"
 
 
 @pytest.fixture
@@ -59,14 +57,3 @@ def test_it_finds_the_best_action_and_its_policy_waits(kind) -> None:
     moved = np.array([(np.diff(a, axis=0)[:9] != 0).reshape(9, -1).any(1) for a in seen])
     assert (moved[:n].any(0) == [False, False, True] * 3).all()
     assert moved[n:].any(0).all()
-
-
-def test_it_is_a_method_of_the_users_folder(kind, tmp_path) -> None:
-    for group, name, text in (("learner", "td3", FIELDS), ("algo", "td3", METHOD)):
-        (tmp_path / "my_conf" / group).mkdir(parents=True)
-        (tmp_path / "my_conf" / group / f"{name}.yaml").write_text(text)
-    line = ["total_steps=60", "random_steps=20", "eval_modes=[]", f"run_dir={tmp_path / 'run'}"]
-    words = ("task=pendulum", "algo=td3", "policy_learner.delay=1", *TINY, *line)
-    assert call_train("--config-dir", tmp_path / "my_conf", *words) == 0
-    summary = summary_of(tmp_path / "run")
-    assert (summary["algo"], summary["finished"]) == ("td3", True)

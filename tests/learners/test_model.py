@@ -60,16 +60,6 @@ def outcomes(reward: RewardNetwork, params: Params, test: Batch) -> tuple[Array,
     return outcome(params, test.obs, test.action, test.next_obs)
 
 
-def test_model_and_reward_are_learned() -> None:
-    """The one-step error is far below the change itself, in every entry."""
-    model, reward = Gaussian(hidden=(64,), activation="silu"), RewardNetwork(hidden=(64,))
-    params = trained(ModelLearner(model, reward), 4000)
-    test = draw(jax.random.key(9), 1000)
-    error = np.abs(predictions(model, params, test) - test.next_obs).mean(0)
-    assert (error < 0.1 * np.abs(test.next_obs - test.obs).mean(0)).all()
-    assert np.abs(outcomes(reward, params, test)[0] - test.reward).mean() < 0.05
-
-
 def test_reward_discount_learns_a_value() -> None:
     """With a constant reward 1 the utility is 1 / (1 - c); if episodes end it is 1."""
 

@@ -11,7 +11,7 @@ import pytest
 from jax import Array
 from toys import begun, learned
 
-from hybrid_rl.core import adjoint, soft_return
+from hybrid_rl.core import adjoint, returns
 from hybrid_rl.critics.ensemble_q import EnsembleQ
 from hybrid_rl.learners.model_based import ModelBased, ModelBasedState
 from hybrid_rl.learners.sac import SAC
@@ -77,7 +77,7 @@ def returned(gain: Array, steps: int, alpha: float = ALPHA, part: Any = PART) ->
     ahead = ModelBased(part, part, part, part, steps=steps)
     paths = ahead.imagine(PARAMS._replace(policy=gain), X, 1, KEY)
     last = part.value(None, paths.x[-1], paths.u[-1])
-    return soft_return.returns(paths, jnp.float32(alpha), DISCOUNT, last)[0]
+    return returns.soft(paths, jnp.float32(alpha), DISCOUNT, last)[0]
 
 
 @pytest.mark.parametrize("steps", [0, 1, 3])
@@ -129,7 +129,7 @@ def test_how_likely_a_decision_is_reached() -> None:
     continues = jnp.array([[0.5, 1.0], [0.2, 0.0], [1.0, 0.3]])
     x = jnp.zeros((4, 2, 1))
     paths = Imagined(x, x, x[..., 0], continues, continues)
-    np.testing.assert_allclose(soft_return.reached(paths), [[1, 1], [0.5, 1], [0.1, 0]], atol=1e-6)
+    np.testing.assert_allclose(returns.reached(paths), [[1, 1], [0.5, 1], [0.1, 0]], atol=1e-6)
 
 
 def test_the_critic_s_error_counts_where_it_is_reached_and_its_goal_is_the_target_s() -> None:

@@ -25,13 +25,6 @@ def test_the_factor_is_one_then_falls_to_zero():
     )
 
 
-def test_a_resumed_run_with_more_decisions_lowers_the_rates_at_its_own_end():
-    made = load("hybrid_stochastic", "task=pendulum", "schedule=linear")
-    for made.total_steps in (200, 300):  # as `train resume=DIR total_steps=300` does
-        learners = build(made).agent.learners
-        assert {each.schedule for each in learners.values()} == {LinearDecay(made.total_steps)}
-
-
 def weights(params: Any) -> list[np.ndarray]:
     """The matrices of all layers."""
     leaves = jax.tree_util.tree_leaves_with_path(params)

@@ -57,8 +57,6 @@ def test_every_member_has_its_own_batch(params) -> None:
         gradient(params["weights"], after),
     )
     assert np.any(jax.tree.leaves(moved), axis=0).tolist() == [True, False, False, False]
-    with pytest.raises(ValueError, match="7 transitions do not divide among 4 members"):
-        MODEL.loss(params, x[:7], u[:7], after[:7])
 
 
 @pytest.mark.parametrize("elites", [None, 2])

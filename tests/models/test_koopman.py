@@ -75,16 +75,6 @@ def test_learning_ends_and_k0_is_random_in_continuous_time() -> None:
     np.testing.assert_allclose(nothing, 0, atol=1e-7)
 
 
-def test_predictions_stay_within_the_bound() -> None:
-    """Also those of a K that explodes, many decisions ahead."""
-    model = Koopman(Monomials(), bound=50.0)
-    params = {**model.init(jax.random.key(0), SPEC), "K": 9.0 * jnp.ones((2, 3))}
-    x = jnp.ones(2)
-    for _ in range(20):
-        x = model.step(params, x, jnp.ones(1))
-    np.testing.assert_array_equal(x, 50.0)
-
-
 def test_products_make_the_model_bilinear() -> None:
     """s = (x, u, x_1 u); K of the bilinear system is recovered."""
     model = Koopman(Monomials(), products=(1,))

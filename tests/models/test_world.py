@@ -1,7 +1,7 @@
 """Planning on the world itself, against MuJoCo C stepped by hand."""
 
-from dataclasses import dataclass, replace
-from typing import Any, cast
+from dataclasses import dataclass
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -11,9 +11,7 @@ import pytest
 from jax import Array
 from toys import Grid
 
-from hybrid_rl.controllers.refits import RefitsController
 from hybrid_rl.controllers.sampling import SamplingController
-from hybrid_rl.controllers.stages import StagesController
 from hybrid_rl.envs.cartpole import ASSET, Cartpole
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.errors import UsageError
@@ -21,7 +19,6 @@ from hybrid_rl.models.world import World
 from hybrid_rl.objectives.predicted_return import PredictedReturn
 from hybrid_rl.rewards.world import WorldReward
 from hybrid_rl.run.saved import Trained
-from hybrid_rl.training.contract import needs_world
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import EnvState, Params, Path, Spec
 
@@ -113,20 +110,3 @@ def test_nothing_is_paid_after_the_end(u: float, want: float) -> None:
     last: Any = Last()
     objective = PredictedReturn(WorldReward(), 1.0, last, last)
     assert float(objective.reward_to_go(Params(), path)[0]) == pytest.approx(want)
-
-
-def test_refits_plan_on_the_world() -> None:
-    """x counts u up to 2, where the episode ends: the best plan reaches it by the greatest steps.
-
-    Only a planner with such a model needs the world.
-    """
-    world: Any = World(Counter())
-    planner = RefitsController(world, PredictedReturn(WorldReward()), horizon=2, elites=4)
-    state = Counter().state(jnp.float32(-1.0))
-    first, key = planner.init(Counter.spec), jax.random.key(0)
-    act = jax.jit(lambda state: planner.act(Params(world=state), first, state.obs, key))
-    action, _, metrics = act(state)
-    np.testing.assert_allclose(action, 1, atol=0.05)
-    assert float(metrics["planner/planned_return"]) == pytest.approx(0 + 1, abs=0.1)
-    assert needs_world(StagesController({"only": planner}))
-    assert not needs_world(replace(planner, model=cast(Any, Last())))

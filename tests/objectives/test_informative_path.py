@@ -1,6 +1,6 @@
 """The information that a path gathers, against NumPy and closed forms."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -9,12 +9,8 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from hybrid_rl.controllers.sampling import SamplingController
 from hybrid_rl.core.domain import Box
-from hybrid_rl.envs.analytic.point_mass import PointMass
-from hybrid_rl.models.exact import Exact
 from hybrid_rl.objectives.informative_path import InformativePath
-from hybrid_rl.proposals.noise import NoiseProposal
 from hybrid_rl.types import Params, Path, Spec
 
 BOX = Box((0, 1), (0.0, 0.0), (2.0, 1.0), lattice=True)
@@ -70,23 +66,3 @@ def test_j_is_the_sum_in_its_docstring() -> None:
     wanted = g @ (kept * (1 - missed)) - 2.0 * np.mean((over**2).sum(1))
     assert over.max() > 0
     assert value_of(OBJECTIVE, past, path) == pytest.approx(wanted, rel=1e-4)
-
-
-def test_the_sampling_planner_goes_where_the_information_is() -> None:
-    """An objective that is no sum over time weighs candidates as a whole."""
-    world: Any = PointMass()
-    controller = SamplingController(
-        *(Exact(world), replace(OBJECTIVE, barrier=0.0), NoiseProposal(1.0, correlation=0.9)),
-        **{"horizon": 15, "samples": 64, "temperature": 0.1, "normalise": True},
-    )
-
-    def one(carry: Any, key: Any) -> tuple[Any, Any]:
-        x, state = carry
-        u, state, metrics = controller.act(Params(), state, x, key)
-        return (world.dynamics(x, u), state), (x, metrics["planner/planned_return"])
-
-    start = jnp.array([0.3, 0.3, 0.0, 0.0]), controller.init(SPEC)
-    keys = jax.random.split(jax.random.key(0), 30)
-    x, returns = jax.jit(lambda: jax.lax.scan(one, start, keys)[1])()
-    assert np.linalg.norm(np.asarray(x)[:, :2] - [1.5, 0.5], axis=1).min() < 0.2
-    assert np.isfinite(returns).all()

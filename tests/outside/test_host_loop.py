@@ -234,6 +234,6 @@ def test_an_end_for_both_reasons_is_an_end_by_the_task():
     for steps, begun, wanted in ((STEPS, 1, [(False, True)] * 2), (1, 0, [(True, False)])):
         copies = counting(fail="both").copies([1], steps)
         copies.reset()
-        copies._vector.envs[0].episode = begun
+        copies._vector.envs[0].unwrapped.episode = begun
         ends = [copies.step(np.zeros((1, 1))) for _ in wanted]
         assert [(e.terminated[0], e.truncated[0]) for e in ends] == wanted

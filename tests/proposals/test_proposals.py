@@ -9,7 +9,6 @@ from toys import begun
 
 from hybrid_rl.core import sampling
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
-from hybrid_rl.proposals.knots import KnotsProposal
 from hybrid_rl.proposals.mixture import MixtureProposal
 from hybrid_rl.proposals.noise import NoiseProposal
 from hybrid_rl.proposals.policy import PolicyProposal
@@ -83,14 +82,3 @@ def test_log_density_is_that_of_the_process(correlation) -> None:
     density = multivariate_normal(cov=covariance).logpdf
     wanted = density(e[:, :, 0]) + density(e[:, :, 1])
     np.testing.assert_allclose(paths.log_prob.sum(1), wanted, rtol=1e-3, atol=1e-3)
-
-
-def test_each_part_of_a_mixture_is_evaluated_for_its_own_candidates_alone() -> None:
-    """Also of a mixture in a mixture: of eight, two by the policy, two by noise, four by knots."""
-    mixed = MixtureProposal(MixtureProposal(BY_POLICY, NOISE, 0.25), KnotsProposal(2))
-    drawn = sampling.Candidates(mixed, K)
-    assert [(part, len(own)) for part, own in drawn.parts] == [
-        (BY_POLICY, 2),
-        (NOISE, 2),
-        (KnotsProposal(2), 4),
-    ]

@@ -4,7 +4,6 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
-import numpy as np
 import pytest
 
 from hybrid_rl.envs.halfcheetah import HalfCheetah
@@ -14,7 +13,6 @@ from hybrid_rl.rewards.aim import Aim
 from hybrid_rl.rewards.known import KnownReward
 from hybrid_rl.rewards.push import Push
 from hybrid_rl.rewards.run import Run
-from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Params
 
 CHEETAH = HalfCheetah("native")
@@ -69,16 +67,3 @@ def test_a_block_is_pushed_to_another_position() -> None:
     obs = jnp.array([0.3, 0.4, 1.0, 0.0])  # rod 5 cm from the block, block 10 cm from the target
     goal = Push(robot, (0.1, 0.0), effort=0.0)
     assert float(goal.reward_of(obs, jnp.zeros(2), obs)) == pytest.approx(-0.8 * 0.05, abs=1e-5)
-
-
-def test_an_episode_pays_the_goal() -> None:
-    """Also over repeated actions and clipped ones, and in `info`."""
-    goal = Run(CHEETAH)
-    episode = Episode(CHEETAH, action_repeat=2, reward=goal)
-    start = jax.jit(episode.reset)(jax.random.key(0))
-    now = jax.jit(episode.step)(start, 3 * ACTION)
-    u = jnp.clip(3 * ACTION, -1, 1)
-    middle = jax.jit(CHEETAH.step)(start, u)
-    end = jax.jit(CHEETAH.step)(middle, u)
-    want = goal.reward_of(start.obs, u, middle.obs) + goal.reward_of(middle.obs, u, end.obs)
-    np.testing.assert_allclose([now.reward, now.clock.total], want, rtol=1e-5)

@@ -33,14 +33,6 @@ def test_scaled_rewards_are_in_real_units() -> None:
     np.testing.assert_allclose(scaled.loss(params, X, U, X, target, ended), wanted, rtol=1e-4)
 
 
-def test_rewards_of_one_value_are_learned_exactly() -> None:
-    """A standard deviation of zero does not divide by zero."""
-    reward = RewardNetwork(hidden=(8,), scale=True)
-    params = reward.observe_targets(begun(reward, SPEC), jnp.full(16, 7.0))
-    assert abs(float(reward.outcome(Params(reward=params), X, U, X)[0]) - 7) < 1e-4
-    assert np.isfinite(reward.loss(params, X, U, X, jnp.float32(7), jnp.float32(0)))
-
-
 def test_the_reward_of_several_networks_is_their_mean() -> None:
     """And their loss the mean of their losses."""
     one, several = (RewardNetwork(hidden=(8,), ends=True, members=k) for k in (1, 3))

@@ -63,15 +63,15 @@ def averages(x: np.ndarray) -> dict[str, np.ndarray]:
     """Estimates [GRID, GRID] of the time average of x [M, 2], by name."""
     import jax.numpy as jnp
 
-    from hybrid_rl.core import ergodic, fourier
+    from hybrid_rl.core import ergodic
 
     s, path, unit = jnp.asarray(grid()), jnp.asarray(x), ((0.0, 0.0), (1.0, 1.0))
     raw = np.histogram2d(x[:, 1], x[:, 0], bins=25, range=[[0, 1], [0, 1]])[0]
-    c = fourier.features(path, *unit, 20).mean(0)
+    c = ergodic.cosines(path, *unit, 20).mean(0)
     mean_square = jnp.mean(jnp.sum((s[:, None] - path[None]) ** 2, -1), 1)
     return {
         "raw: cells visited": np.kron(raw, np.ones((4, 4))) / raw.mean(),
-        "Fourier, 20 cosines a side": on_grid(fourier.features(s, *unit, 20) @ c),
+        "Fourier, 20 cosines a side": on_grid(ergodic.cosines(s, *unit, 20) @ c),
         "sum of Gaussians (6.1)": on_grid(jnp.exp(ergodic.log_sum(s, path, jnp.full(2, VARIANCE)))),
         "Jensen's bound (6.17)": on_grid(jnp.exp(-0.5 * mean_square / VARIANCE)),
     }

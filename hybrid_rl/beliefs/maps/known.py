@@ -5,7 +5,7 @@ the robot: a robot in contact is at d = r, so that the step lies a width w outsi
 """
 
 from functools import cache
-from typing import Annotated, Protocol
+from typing import Annotated, Any
 
 import jax
 import jax.numpy as jnp
@@ -19,22 +19,15 @@ OUTLINE, GRID = 256, 64  # points of the outline; starts a side of its search
 NEWTON, NEAR = 20, 1e-4  # iterations; |d - r| of a solution, in the box's shorter side
 
 
-class ContactEnv(Env, Protocol):
-    """An environment on a plane in which a round robot touches objects."""
-
-    radius: float  # [m] of the robot
-    low: tuple[float, ...]  # [m] of the plane
-    high: tuple[float, ...]
-
-    def distance(self, s: Array) -> Array:
-        """Signed distance [] [m] of s [2] to the nearest object, at rest where they are listed."""
-
-
 @part
 class KnownMap:
-    """The map of a world whose objects are known."""
+    """The map of a world whose objects are known: a plane with a round robot.
 
-    world: Annotated[ContactEnv, has("distance", "needs contacts")]
+    The world has the robot's `radius` and the plane's `low` and `high` [m], and distance(s [2]) is
+    the signed distance [] [m] to the nearest object, at rest where they are listed.
+    """
+
+    world: Annotated[Env, has("distance", "needs contacts")]
     width: Positive = 0.008  # w [m]
     low: float = 0.01  # lo: at least twice the sensor's rate of false contacts
     high: float = 0.99  # hi
@@ -44,9 +37,13 @@ class KnownMap:
             raise FieldError(self, "low", f"must lie between 0 and high={self.high}")
 
     @property
+    def _plane(self) -> Any:
+        return self.world
+
+    @property
     def middle(self) -> tuple[float, float]:
         """c: the middle of the map's box [m]."""
-        (a, b), (c, d) = self.world.low, self.world.high
+        (a, b), (c, d) = self._plane.low, self._plane.high
         return (a + c) / 2, (b + d) / 2
 
     @property
@@ -56,12 +53,12 @@ class KnownMap:
 
     def chance(self, s: Array) -> Array:
         """p(y = 1) [] at s [2]."""
-        inside = (self.world.radius + self.width - self.world.distance(s)) / self.width
+        inside = (self._plane.radius + self.width - self._plane.distance(s)) / self.width
         return self.low + (self.high - self.low) * jax.nn.sigmoid(inside)
 
 
 @cache
-def _outline(world: ContactEnv) -> np.ndarray:
+def _outline(world: Any) -> np.ndarray:
     """Positions [M, 2] at d = r, by Newton's method from a grid."""
     with jax.ensure_compile_time_eval():
         sides = [jnp.linspace(a, b, GRID) for a, b in zip(world.low, world.high, strict=True)]
@@ -73,6 +70,4 @@ def _outline(world: ContactEnv) -> np.ndarray:
         d = np.asarray(jax.vmap(world.distance)(s))
         side = min(b - a for a, b in zip(world.low, world.high, strict=True))
         s = np.asarray(s)[np.abs(d - world.radius) < NEAR * side]
-    if not len(s):
-        raise ValueError("map.world: has no objects to touch")
     return s[np.random.default_rng(0).choice(len(s), OUTLINE)]

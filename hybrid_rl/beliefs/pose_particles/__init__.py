@@ -18,29 +18,18 @@ See `rejuvenation`. A measurement at s informs by
 Source: thesis eq. (5.1) and section 5.3, with the information at s~ instead of s.
 """
 
-from typing import Literal, NamedTuple, Protocol
+from typing import Annotated, Any, Literal, NamedTuple
 
 import jax
 import jax.numpy as jnp
-import numpy as np
 from jax import Array
 
 from hybrid_rl.beliefs.pose_particles import rejuvenation
 from hybrid_rl.core import poses, resampling
 from hybrid_rl.core.batching import when_any
 from hybrid_rl.core.domain import Box
-from hybrid_rl.fields import Count, Positive, part
+from hybrid_rl.fields import Count, Positive, has, part
 from hybrid_rl.types import Spec
-
-
-class ContactMap(Protocol):
-    """p(y = 1 | s): where a robot on a plane touches an object."""
-
-    middle: tuple[float, float]  # [m] of the map
-    outline: np.ndarray  # [M, 2] [m] positions of contact
-
-    def chance(self, s: Array) -> Array:
-        """p [] in (0, 1) at s [2]."""
 
 
 class Particles(NamedTuple):
@@ -63,8 +52,8 @@ class PoseParticles:
     A full memory takes no more measurements (`belief/full` is 1).
     """
 
-    map: ContactMap
-    domain: Box  # bounds of t
+    map: Annotated[Any, has("chance", "must be a map of objects, such as map=known")]
+    domain: Box  # bounds of t, of two coordinates
     particles: Count = 1000  # N
     capacity: Count = 400  # C
     moves: Count = 4  # Metropolis steps after a resampling
@@ -74,10 +63,6 @@ class PoseParticles:
     measure: Literal["trace", "det", "mutual"] = "trace"
     subset: Count = 64  # particles in the information
     length: Positive = 0.3  # rho [m]
-
-    def __post_init__(self) -> None:
-        if self.domain.size != 2:
-            raise ValueError(f"domain.coordinates: poses need a plane, not {self.domain.size}")
 
     @property
     def _frame(self) -> poses.Frame:

@@ -13,7 +13,7 @@ a running mean over the updates, is logged and ranks the members of an ensemble 
 decay of weights is AdamW's (Loshchilov and Hutter 2019).
 """
 
-from typing import Annotated, Any, ClassVar, Protocol
+from typing import Annotated, Any, ClassVar
 
 import jax
 import jax.numpy as jnp
@@ -22,33 +22,15 @@ from flax import struct
 from jax import Array
 
 from hybrid_rl.core import decay
+from hybrid_rl.core.decay import adamw
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
-from hybrid_rl.core.optimisers import adamw
-from hybrid_rl.fields import Count, Discount, FieldError, NotNegative, Positive, has, part
+from hybrid_rl.fields import Count, Discount, NotNegative, Positive, has, part
 from hybrid_rl.learners.model import held_out
 from hybrid_rl.protocols import Reward, Schedule, Trainable
 from hybrid_rl.types import Batch, Params, PyTree, Spec
 
 KNOWN = "has no weights to learn; give model_learner.reward=null"
 RATE = 0.01  # of the running mean of the held-out loss, per update (our choice)
-
-
-class LearnedReward(Reward, Protocol):
-    """A reward that is learned; its parameters hold "weights" as a Trainable's do."""
-
-    def init(self, key: Array, spec: Spec) -> PyTree:
-        """Initial parameters, for planning states of size spec.n."""
-
-    def observe(self, params: PyTree, x: Array) -> PyTree:
-        """Parameters with statistics updated by planning states x [B, n]."""
-
-    def observe_targets(self, params: PyTree, target: Array) -> PyTree:
-        """Parameters with statistics updated by targets [B] of the reward."""
-
-    def loss(
-        self, params: PyTree, x: Array, u: Array, after: Array, target: Array, ended: Array
-    ) -> Array:
-        """Loss [] of one transition against target [] and `ended` [], 0 or 1."""
 
 
 @struct.dataclass
@@ -81,14 +63,14 @@ class ModelLearner:
             "(protocols.Trainable)",
         ),
     ]
-    reward: Annotated[LearnedReward, has("init", KNOWN)] | None = None
+    reward: Annotated[Reward, has("init", KNOWN)] | None = None
     learning_rate: Positive = 3e-3
     batch_size: Count = 128
     updates: float = 2  # per decision
     reward_discount: Discount = 0.0
     max_grad_norm: Positive | None = None
     weight_decay: NotNegative = 0.0  # of the layers' matrices, per unit of learning rate
-    holdout: float = 0.0  # share of the decisions
+    holdout: Discount = 0.0  # share of the decisions
     schedule: Schedule | None = None  # of the learning rates
 
     data: ClassVar[str] = "uniform"
@@ -100,8 +82,6 @@ class ModelLearner:
                 "reward_model.next_state=true: the value of x' would need the state after it; give "
                 "model_learner.reward_discount=0"
             )
-        if not 0 <= self.holdout <= 0.5:
-            raise FieldError(self, "holdout", "must lie in [0, 0.5]")
         if self._elites is not None and not self.holdout:
             raise ValueError(
                 f"model.elites={self._elites}: needs decisions that rank the members; give "
@@ -123,6 +103,11 @@ class ModelLearner:
         """Members of an ensemble that draw states, if not all do."""
         return getattr(self.model, "elites", None)
 
+    @property
+    def _learned(self) -> Any:
+        """The reward, which has `observe`, `observe_targets` and `loss` as well."""
+        return self.reward
+
     def _optimiser(self, factor: Array | float = 1.0) -> optax.GradientTransformation:
         adam = adamw(factor * self.learning_rate, self.weight_decay)
         if self.max_grad_norm is None:
@@ -136,7 +121,7 @@ class ModelLearner:
         else:
             for_model, for_reward = jax.random.split(key)
             model = self.model.init(for_model, spec)
-            reward = self.reward.init(for_reward, lifted_spec(self.model, spec))
+            reward = self._learned.init(for_reward, lifted_spec(self.model, spec))
         optimiser = self._optimiser().init(_weights(model, reward))
         none = HeldOut(jnp.zeros(self.batches), jnp.zeros(())) if self.holdout else None
         return ModelState(model, reward, optimiser, none)
@@ -194,7 +179,7 @@ class ModelLearner:
 
     def _reward(self, reward: Any, model: Any, batch: Batch) -> tuple[Any, Any]:
         """The reward's parameters with updated statistics, and its loss as a function."""
-        part = self.reward
+        part = self._learned
         if part is None:
             return None, None
         first: Any = jax.tree.map(lambda x: x[: self.batch_size], batch)

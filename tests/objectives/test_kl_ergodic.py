@@ -134,24 +134,6 @@ def test_what_is_covered_is_the_measure_of_the_episode_so_far(name) -> None:
     assert float(got) == pytest.approx(-float(value), rel=1e-4)
 
 
-@pytest.mark.parametrize(
-    ("algo", "metric"),
-    [
-        ("kle3", "divergence"),
-        ("kle3_jensen", "divergence"),
-        ("fourier_ergodic", "fourier_metric"),
-    ],
-)
-def test_exploring_methods_log_how_well_the_target_is_covered(algo, metric) -> None:
-    """By the measure that they minimise; without a memory there is nothing to measure."""
-    agent = config.build(config.load(["task=point_mass", f"algo={algo}"])).agent
-    state, obs = agent.controller.init(agent.spec), jnp.zeros(agent.spec.obs)
-    act = partial(agent.controller.act, Params(), state, obs)
-    metrics = jax.eval_shape(lambda: act(jax.random.key(0)))[2]
-    assert metrics[f"exploration/{metric}"].shape == ()
-    assert not replace(KL, memory=0).covered(Params(), KL.init(SPEC), obs, jax.random.key(0))
-
-
 def test_the_bound_depends_only_on_the_mean() -> None:
     """Targets of equal mean give equal gradients towards it; those of the measure differ."""
     x = jnp.array([[0.1, 0.0, 0.2]] * 3)
@@ -247,8 +229,3 @@ def test_the_defaults_explore_around_an_unstable_equilibrium() -> None:
     assert not np.any(states.done)
     assert np.abs(states.obs[:, 1:3]).max() < 0.3
     assert np.mean(states.obs[200:, 0] > 0.2) > 0.5
-
-
-def test_corrections_are_free_where_the_regulator_is_clipped() -> None:
-    """A hanging rod: with small corrections the cart would follow the regulator off the rail."""
-    assert np.abs(explored("cart_swing_up", 100).obs[:, 1]).max() < 3
