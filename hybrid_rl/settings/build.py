@@ -35,6 +35,7 @@ from hybrid_rl.settings.groups import CONF, groups, search_path
 from hybrid_rl.settings.registry import register
 from hybrid_rl.settings.values import COUNTS, PAID, SECTIONS, check, check_kinds
 from hybrid_rl.training.agent import Agent
+from hybrid_rl.training.ahead import ahead
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import Imagination
 
@@ -189,8 +190,9 @@ def built(config: DictConfig) -> Run:
 
 def _acting(parts: DictConfig) -> tuple[Episode, tuple[str, ...], dict[str, Controller]]:
     """The episodes, notes about them, and the controllers as they act in training."""
-    each = parts.controllers.items()  # after the episodes, whose reward they may hold, too
-    return *_episode(parts), {k: _instantiate(v, f"controllers.{k}") for k, v in each}
+    episode, notes = _episode(parts)  # first, as controllers may hold their reward, too
+    each = ((k, _instantiate(v, f"controllers.{k}")) for k, v in parts.controllers.items())
+    return episode, notes, {k: ahead(controller, episode.known_lag) for k, controller in each}
 
 
 def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller], Imagination | None]:

@@ -1,13 +1,18 @@
 """Actions that arrive late, in simulation: what acts when, and what the transitions say of it."""
 
+from dataclasses import replace
+
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from tiny import TINY
 
+from hybrid_rl.data.replay import unpack
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.cartpole import Cartpole
 from hybrid_rl.envs.halfcheetah import HalfCheetah
+from hybrid_rl.settings import build as config
 from hybrid_rl.training.episode import Episode
 
 KEY = jax.random.key(0)
@@ -89,3 +94,32 @@ def test_jitter_and_loss_have_their_statistics():
     assert (got.acted[:, 0] != ramp[:, 0]).mean() == pytest.approx(0.3, abs=0.03)
     other = moved(Episode(env, 10 * T, loss=0.3), ramp, jax.random.key(1)).clock.sent
     assert (got.acted != other.acted).any()
+
+
+@pytest.mark.parametrize("given", [{}, {"lag": 0.0}])
+def test_transitions_hold_what_acted(given):
+    """By hand from what was sent; or what was sent, if the lag is not known."""
+    env, T = Pendulum(), 12
+    delay = 2.3 * env.spec.dt
+    agent = config.build(
+        config.load([*TINY, "task=pendulum", "algo=sac", "random_steps=100"])
+    ).agent
+    agent = replace(agent, episode=Episode(env, 9, delay=delay, **given))
+
+    def one(state, t):
+        after, metrics = agent.step(state, t)
+        return after, (metrics["world/action"], metrics["episode/done"][0])
+
+    state, (u, done) = jax.jit(lambda key: jax.lax.scan(one, agent.init(key), jnp.arange(T)))(KEY)
+    rows = unpack(state.memory.rows[:T, 0], agent.spec)
+    u, before = np.asarray(u), np.zeros(T + 3)
+    np.testing.assert_array_equal(np.flatnonzero(done), [8])
+    for begin, end in ((0, 9), (9, T)):  # nothing was sent before an episode
+        before[begin + 3 : end + 3] = u[begin:end]
+        before[begin : begin + 3] = 0
+        acted = 0.3 * before[begin:end] + 0.7 * before[begin + 1 : end + 1]
+        want = u[begin:end] if given else acted
+        np.testing.assert_allclose(rows.action[begin:end, 0], want, rtol=1e-5, atol=1e-6)
+        paid = jax.vmap(env.reward_of)(rows.obs, rows.action, rows.next_obs)[begin:end]
+        if not given:
+            np.testing.assert_allclose(rows.reward[begin:end], paid, rtol=1e-4, atol=1e-5)
