@@ -5,11 +5,19 @@
 
 u_0 is the action of the decision, u_1 the one before; t_i is when it was sent and T when the next
 observation was taken, both from this one on [s]. Y is the change of the observation in units of its
-standard deviation, P projects on what is linear in the observation, B is a ridge regression.
+standard deviation, P projects on what is linear in the observation, B is a ridge regression. Where
+no lag explains more than any would by chance, it is 0.
 """
+
+from pathlib import Path
 
 import numpy as np
 
+from hybrid_rl.envs.adapters.robot import Robot
+from hybrid_rl.outside import handover
+
+ENOUGH = 200  # random decisions that an estimate needs
+SHORTEST = 1e-6  # [s] of an interval, where an observation is that of before
 RIDGE = 1e-4  # of actions, per decision
 STEPS = 50  # lags in a decision that are tried
 
@@ -19,6 +27,7 @@ def shares(times: np.ndarray, interval: np.ndarray, lag: float) -> np.ndarray:
 
     times: [..., P] when each was sent [s]; the oldest acted before.
     """
+    interval = np.maximum(np.asarray(interval, float), SHORTEST)
     begins = np.clip(times + lag, 0, interval[..., None])
     begins[..., -1] = 0
     ends = np.concatenate([interval[..., None], begins[..., :-1]], axis=-1)
@@ -49,4 +58,21 @@ def estimated(
         return float(((y - u @ np.linalg.solve(u.T @ u + ridge, u.T @ y)) ** 2).sum())
 
     tried = np.arange((sent.shape[1] - 2) * STEPS + 1) / STEPS * period
-    return float(min(tried, key=error))
+    errors = np.array([error(lag) for lag in tried])
+    chance = 1 - 2 * sent.shape[-1] / len(obs)
+    return float(tried[errors.argmin()]) if errors.min() < chance * errors[0] else 0.0
+
+
+def known_lag(env: Robot, folder: Path) -> float | None:
+    """The lag [s] of actions after they were sent: given, or `published_lag`; None: neither."""
+    found = handover.latest(folder / "lag", np.float64(0))
+    return env.lag if env.lag is not None or found is None else float(found[1])
+
+
+def published_lag(folder: Path, rows: np.ndarray) -> float:
+    """The lag by the rows [N] of random decisions, which `known_lag` gives from now on."""
+    names, lag = ("obs", "next_obs", "sent", "times", "interval"), 0.0
+    if len(rows) >= ENOUGH:
+        lag = estimated(*(rows[name] for name in names))
+    handover.publish(folder / "lag", np.float64(lag), len(rows))
+    return lag

@@ -14,7 +14,7 @@ from omegaconf import DictConfig, ListConfig, OmegaConf, open_dict
 from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl.envs.adapters.external import External, check_world
-from hybrid_rl.envs.adapters.robot import Robot
+from hybrid_rl.envs.adapters.robot import PENDING, Robot
 from hybrid_rl.envs.mujoco.physics import resolve as resolve_physics
 from hybrid_rl.errors import PartError, UsageError
 from hybrid_rl.fields import FieldError
@@ -192,7 +192,8 @@ def _acting(parts: DictConfig) -> tuple[Episode, tuple[str, ...], dict[str, Cont
     """The episodes, notes about them, and the controllers as they act in training."""
     episode, notes = _episode(parts)  # first, as controllers may hold their reward, too
     each = ((k, _instantiate(v, f"controllers.{k}")) for k, v in parts.controllers.items())
-    return episode, notes, {k: ahead(controller, episode.known_lag) for k, controller in each}
+    lag, most = episode.known_lag, PENDING * isinstance(episode.env, Robot)
+    return episode, notes, {k: ahead(controller, lag, most) for k, controller in each}
 
 
 def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller], Imagination | None]:
