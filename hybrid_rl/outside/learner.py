@@ -100,7 +100,7 @@ def transition(row: Any, lag: float | None = None) -> Transition:
     """
     ends = ("terminated", "truncated")
     kinds = {name: bool if name in ends else np.float32 for name in Transition._fields}
-    made = {name: np.array(row[name], kind)[None, None] for name, kind in kinds.items()}
+    made: Any = {name: np.array(row[name], kind)[None, None] for name, kind in kinds.items()}
     if lag is not None:
         u = acted(row["sent"], row["times"], row["interval"], lag)
         made["action"] = u.astype(np.float32)[None, None]

@@ -107,8 +107,8 @@ class Episode:
 
     def acted(self, action: Array, now: EnvState) -> Array:
         """The action [..., m] that led to `now`: what acted of those sent, if there is a lag."""
-        known = now.clock is not None and now.clock.sent is not None and self.known_lag
-        return now.clock.sent.acted if known else action
+        sent = None if now.clock is None else now.clock.sent
+        return sent.acted if sent is not None and self.known_lag else action
 
     @property
     def world(self) -> Env:

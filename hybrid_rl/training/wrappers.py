@@ -170,9 +170,9 @@ class Late(Around):
     def reset(self, key: Array) -> EnvState:
         """The first state, with no action sent."""
         state, count = super().reset(key), int(self.delay + self.jitter) + 1
-        drawing = jax.random.key_data(jax.random.fold_in(key, 8))
+        random, drawing = self.jitter or self.loss, jax.random.fold_in(key, 8)
         none, waits = jnp.zeros((count, self.spec.act)), jnp.full(count, jnp.inf)
-        sent = Sent(none, waits, none[0], none[0], drawing if self._random else None)
+        sent = Sent(none, waits, none[0], none[0], jax.random.key_data(drawing) if random else None)
         data = _held(state.data, 0) if self._steps(state) else state.data
         return state.replace(data=data, clock=state.clock._replace(sent=sent))
 
@@ -197,7 +197,7 @@ class Late(Around):
     def _send(self, sent: Sent, action: Array) -> Sent:
         """`sent` with one action more, the oldest of which cannot arrive any more."""
         wait, drawing = jnp.float32(self.delay), sent.drawing
-        if self._random:
+        if drawing is not None:
             key, losing, later = jax.random.split(jax.random.wrap_key_data(drawing), 3)
             wait = wait + self.jitter * jax.random.uniform(key)
             before = jnp.where(jnp.isfinite(sent.waits), sent.waits, -jnp.inf).max()
@@ -207,10 +207,6 @@ class Late(Around):
         actions = jnp.concatenate((sent.actions[1:], action[None]))
         waits = jnp.append(sent.waits[1:], wait)
         return sent._replace(actions=actions, waits=waits, drawing=drawing)
-
-    @property
-    def _random(self) -> bool:
-        return self.jitter > 0 or self.loss > 0
 
     def _steps(self, state: EnvState) -> int:
         """Steps of the physics in a decision; 0: actions arrive between decisions, or no MuJoCo."""
