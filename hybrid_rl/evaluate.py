@@ -2,7 +2,7 @@
 
     python -m hybrid_rl.evaluate run=runs/hopper/sac/TIME mode=policy episodes=20
     python -m hybrid_rl.evaluate policy=halfcheetah
-    python -m hybrid_rl.evaluate policy=halfcheetah episode.delay=1 episode.sensor_noise=0.01
+    python -m hybrid_rl.evaluate policy=halfcheetah episode.delay=0.05 episode.sensor_noise=0.01
     python -m hybrid_rl.evaluate run=DIR reward=speed reward.target=5
     python -m hybrid_rl.evaluate run=DIR constraint=speed constraint.most=2 constraint.chance=0.1
 

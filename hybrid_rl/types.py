@@ -42,13 +42,23 @@ class Spec(NamedTuple):
         return self.obs if self.state is None else self.state
 
 
+class Sent(NamedTuple):
+    """Actions that were sent, the newest last, and what they do; times in decisions."""
+
+    actions: Array  # [L, m]
+    waits: Array  # [L] until each arrives; infinite: it has arrived, was overtaken or is lost
+    acting: Array  # [m] the last one that arrived
+    acted: Array  # [m] the mean of those that acted in the last decision, by their shares of it
+    drawing: Array | None = None  # data of the key of what is random; None: nothing
+
+
 class Clock(NamedTuple):
     """What an episode counts and remembers since its reset; None: what it has no use for."""
 
     decision: Array  # [] int32
     total: Array  # [] the return: rewards without discount, and without a constraint's price
     violations: Array | None = None  # [] of the constraint
-    late: Array | None = None  # [delay, m] actions that are to arrive
+    sent: Sent | None = None  # actions that arrive late
     true_obs: Array | None = None  # [o] the observation before noise
     sensing: Array | None = None  # data of the key of the next noise of the sensors
     disturbing: Array | None = None  # data of the key of the next noise of an action

@@ -44,7 +44,7 @@ BROKEN = {  # name -> what differs from a sound run of the pendulum
     "terminal bug": "algo=sac env.ends=50",
     "NaN reward": "algo=sac env.nan_above=6",
     "too few random decisions": "algo=nn_mppi random_steps=5",
-    "delay": "algo=sac episode.delay=2",
+    "delay": "algo=sac episode.delay=0.1",
     "noise": "algo=sac episode.sensor_noise=0.5",
 }
 SOUND = {  # name -> its task and method

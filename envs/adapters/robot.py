@@ -24,8 +24,10 @@ import numpy as np
 
 from hybrid_rl.envs.adapters.unstepped import Made, Unstepped, import_named
 from hybrid_rl.errors import FAULTS, UsageError, blame
-from hybrid_rl.fields import Count, Natural, Positive, part
+from hybrid_rl.fields import Count, NotNegative, Positive, part
 from hybrid_rl.types import Spec
+
+PENDING = 4  # actions at most that are sent and have not acted yet
 
 
 @part
@@ -46,7 +48,7 @@ class Outside(Unstepped):
 class Robot(Made):
     """A robot that learns while it moves. Its sizes are read from its class, without making one."""
 
-    past_actions: Natural = 0  # that the observation ends with, where actions take a period to act
+    lag: NotNegative | None = None  # [s] from sending an action until it acts; None: is estimated
     rate: Positive | None = None  # greatest change of an action from one decision to the next, of 2
     stale: Positive = 2.0  # periods after which an observation is too old to act on
     silence_s: Positive = 1.0  # [s] without an observation, or in a method, until motion is ended
@@ -78,7 +80,7 @@ class Robot(Made):
         if not (dt > 0 and obs > 0 and obs.is_integer()):
             line = "dt and obs must be above 0, and obs a whole number"
             raise UsageError(f"env.make={self.name}: {line}")
-        return Spec(int(obs) + self.past_actions * len(low), len(low), dt)
+        return Spec(int(obs), len(low), dt)
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:

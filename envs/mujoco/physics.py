@@ -66,6 +66,7 @@ class PhysicsState:
     sensors: Array | None  # [nsensordata] of this state; of accelerations: of the last step
     asset: str = struct.field(pytree_node=False)  # the model whose state it is
     fields: dict[str, Array] = struct.field(default_factory=dict)  # of MjModel, this episode's own
+    held: Array | None = None  # [] steps for which `ctrl` stays, while newer controls are to arrive
 
 
 def resolve(implementation: str, worlds: int | None = None) -> str:
@@ -122,8 +123,16 @@ class Physics:
         return state if complete else self._advance(state, 0)
 
     def step(self, state: PhysicsState, ctrl: Array, n: int) -> PhysicsState:
-        """The state after `n` physics steps with constant ctrl [nu]."""
-        return self._advance(state.replace(ctrl=_or_none(jnp.asarray(ctrl, jnp.float32))), n)
+        """The state after `n` physics steps with constant ctrl [nu], once none is held any more."""
+        new = _or_none(jnp.asarray(ctrl, jnp.float32))
+        if state.held is None or new is None:
+            return self._advance(state.replace(ctrl=new), n)
+
+        def one(_: int, state: PhysicsState) -> PhysicsState:
+            u, left = jnp.where(state.held > 0, state.ctrl, new), jnp.maximum(state.held - 1, 0)
+            return self._advance(state.replace(ctrl=u, held=left), 1)
+
+        return jax.lax.fori_loop(0, n, one, state)
 
     def sensor(self, state: PhysicsState, name: str) -> Array:
         """The reading [dim] of sensor `name` at `state`."""

@@ -14,6 +14,7 @@ from hybrid_rl.core import batching
 from hybrid_rl.errors import UsageError, one_line
 from hybrid_rl.protocols import Controller
 from hybrid_rl.training.agent import Agent
+from hybrid_rl.training.ahead import AheadState
 from hybrid_rl.types import Params, Spec
 
 NONE: Mapping[str, Array] = MappingProxyType({})
@@ -97,6 +98,16 @@ class Exploring:
     def begin(self) -> None:
         """An episode begins."""
         self._acting.begin()
+
+    def informed(self, sent: np.ndarray, lag: float) -> None:
+        """What was sent, [K, m] with the newest last, and how late it acts [decisions]."""
+        control = self._acting.control
+        if isinstance(control, AheadState):
+            known = {
+                "sent": sent.astype(np.float32)[None, None],
+                "lag": np.full((1, 1), lag, np.float32),
+            }
+            self._acting.control = control._replace(**known)
 
     def __call__(self, obs: np.ndarray, decisions: int) -> np.ndarray:
         """The action [m] at `obs` [o], after so many decisions of the run."""

@@ -25,10 +25,11 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.envs.adapters.robot import Robot
+from hybrid_rl.envs.adapters.robot import PENDING, Robot
 from hybrid_rl.errors import FAULTS, WorldError, blame, one_line
 from hybrid_rl.outside import handover
 from hybrid_rl.outside.acting import Exploring
+from hybrid_rl.outside.lag import known_lag
 from hybrid_rl.outside.robot_process import WAITING, report
 from hybrid_rl.outside.row_log import RowLog, row_type
 from hybrid_rl.training.agent import Agent
@@ -78,6 +79,7 @@ class Actor:
         )
         if self.params is not None:
             self._decide.take(self.params)
+        self._lag = known_lag(self.env, self.folder) or 0.0
         self._version, self._beat, self._allowed = 0, time.monotonic(), math.inf
         self._made, self._ended = time.time(), False
         self._since = math.inf  # when the robot fell silent, if it has begun no episode since
@@ -131,52 +133,56 @@ class Actor:
         self._since = math.inf
         self._episode, self._stretch = self._episode + 1, self._stretch + 1
         self._decide.begin()
-        row, taken, self._return = None, 0, 0.0  # of the decision before
+        row, before, taken, self._return = None, 0.0, 0, 0.0  # of the decision before
         began, k, heard = time.monotonic(), 0, time.monotonic()
-        past = [self.env.safe] * max(self.env.past_actions, 1)  # the newest first
+        self._past = [(-math.inf, self.env.safe)] * (PENDING + 1)
         while not self._over() and (begin := began + k * self.spec.dt) < end:
             _sleep_until(begin)
-            obs, stamp = self._observed(past)
+            obs, stamp = self._observed()
             if obs is not None:
                 heard, taken = time.monotonic(), taken + (row is not None)
-                if row is not None and self._record(row, obs, taken):
-                    return None
+                if row is not None:
+                    row["interval"] = stamp - before
+                    if self._record(row, obs, taken):
+                        return None
             elif time.monotonic() - heard > self.env.silence_s:
                 return self._silent(f"no observation for {self.env.silence_s:g} s")
-            row = None if obs is None else self._acted(obs, stamp, past[0], begin)
-            past = [self._safe() if row is None else row["action"], *past[:-1]]
+            row = None if obs is None else self._acted(obs, stamp, begin)
+            before = stamp
+            if row is None:
+                self._safe()
             if (late := time.monotonic() - begin) > self.spec.dt:
                 row, self.counts.missed = None, self.counts.missed + 1
             self._stretch += row is None
             k += max(1, math.ceil(late / self.spec.dt))
         return None
 
-    def _acted(
-        self, obs: np.ndarray, stamp: float, before: np.ndarray, begin: float
-    ) -> np.ndarray | None:
+    def _acted(self, obs: np.ndarray, stamp: float, begin: float) -> np.ndarray | None:
         """The row of a decision at `obs` that was applied; None if it is not finite.
 
-        stamp: of the observation; before: the last action; begin: of the period.
+        stamp: of the observation; begin: of the period.
         """
-        u, rate = self._decide(obs, self._number), self.env.rate or 2.0
-        action = np.clip(np.clip(u, before - rate, before + rate), -1, 1)
+        lag = min((time.monotonic() - stamp + self._lag) / self.spec.dt, PENDING)
+        self._decide.informed(np.array([u for _, u in self._past[-2::-1]]), max(lag, 0.0))
+        u, rate, last = self._decide(obs, self._number), self.env.rate or 2.0, self._past[0][1]
+        action = np.clip(np.clip(u, last - rate, last + rate), -1, 1)
         if not np.isfinite(action).all():
             return None
         self._apply(action)
         now, row = time.monotonic(), np.zeros((), self._kind)
         row["obs"], row["action"], row["version"] = obs, action, self._version
         row["late"], row["age"], row["time"] = now - begin, now - stamp, time.time()
+        row["times"], row["sent"] = zip(*((at - stamp, u) for at, u in self._past), strict=True)
         return row
 
     def _record(self, row: np.ndarray, obs: np.ndarray, taken: int) -> bool:
         """Append the row of the decision that led to `obs`; whether it ended the episode."""
-        size = self.env.kind.obs
-        seen, physical, after = row["obs"][:size], self._physical(row["action"]), obs[:size]
-        reward = self._call("reward", lambda: float(self.robot.reward(seen, physical, after)))
+        seen, physical = row["obs"], self._physical(row["action"])
+        reward = self._call("reward", lambda: float(self.robot.reward(seen, physical, obs)))
         if not math.isfinite(reward):
             raise WorldError(f"{self.env.name}: reward: gives {reward}")
         failed = getattr(self.robot, "terminated", lambda obs: False)
-        terminated = self._call("terminated", lambda: bool(failed(after)))
+        terminated = self._call("terminated", lambda: bool(failed(obs)))
         truncated = not terminated and taken >= self.agent.episode.steps
         row["number"], row["stretch"] = self._number, self._stretch
         row["episode"], row["next_obs"], row["reward"] = self._episode, obs, reward
@@ -190,8 +196,8 @@ class Actor:
             self.counts.returns.append(self._return)
         return terminated or truncated
 
-    def _observed(self, past: list[np.ndarray]) -> tuple[np.ndarray | None, float]:
-        """(observation [o] with past actions, its time); None if there is none to act on."""
+    def _observed(self) -> tuple[np.ndarray | None, float]:
+        """(observation [o], its time); None if there is none to act on."""
         size, most = self.env.kind.obs, self.env.stale * self.spec.dt
         given = None
         with suppress(OSError):  # a robot that does not answer
@@ -206,19 +212,19 @@ class Actor:
                 line = OBSERVED.format(size, reprlib.repr(given))
                 raise WorldError(f"{self.env.name}: observe: {line}")
             if age <= most and np.isfinite(obs).all():  # a time that is NaN is no time
-                return np.concatenate([obs, *past[: self.env.past_actions]]), stamp
+                return obs, stamp
         self.counts.stale += 1
         return None, 0.0
 
     def _apply(self, action: np.ndarray) -> None:
         with suppress(OSError):  # a lost connection: there will be no observation, either
             self._call("apply", lambda: self.robot.apply(self._physical(action)))
+        self._past = [(time.monotonic(), action), *self._past[:-1]]
 
-    def _safe(self) -> np.ndarray:
-        """Apply the safe action, and return it."""
+    def _safe(self) -> None:
+        """Apply the safe action."""
         self.counts.unsafe += 1
         self._apply(self.env.safe)
-        return self.env.safe
 
     def _silent(self, why: str) -> None:
         """End motion, and wait for `alone_s` until the robot answers; the learner shows why."""
@@ -229,7 +235,7 @@ class Actor:
         while not self._over():
             if time.monotonic() - self._since > self.env.alone_s:
                 raise TimeoutError(f"{line}, nothing else for {self.env.alone_s:g} s")
-            if self._observed([])[0] is not None:
+            if self._observed()[0] is not None:
                 break
             self._beat = time.monotonic()
             time.sleep(RETRY_S)
@@ -276,6 +282,7 @@ class Actor:
             if now != known and (found := handover.latest(file, self._decide.like)) is not None:
                 known, self._version = now, found[0]
                 self._decide.take(found[1])
+                self._lag = known_lag(self.env, self.folder) or 0.0
             time.sleep(self.env.handover_s / 2)
 
 

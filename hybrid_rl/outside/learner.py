@@ -19,6 +19,7 @@ from jax import Array
 
 from hybrid_rl.data.replay import Memory
 from hybrid_rl.errors import UsageError
+from hybrid_rl.outside.lag import acted
 from hybrid_rl.outside.row_log import row_type
 from hybrid_rl.training.agent import AgentState
 from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Loop, put
@@ -91,12 +92,19 @@ class RowLoop(Loop):
         return state, put(rows, metrics, i)
 
 
-def transition(row: Any) -> Transition:
-    """The decision of a row, [1, 1, ...], for the two programs."""
+def transition(row: Any, lag: float | None = None) -> Transition:
+    """The decision of a row, [1, 1, ...], for the two programs.
+
+    lag: [s] from sending an action until it acts, of a robot, for the mean of those that acted;
+    None: the row's own action.
+    """
     ends = ("terminated", "truncated")
     kinds = {name: bool if name in ends else np.float32 for name in Transition._fields}
-    made: Any = (np.array(row[name], kind)[None, None] for name, kind in kinds.items())
-    return Transition(*made)
+    made: Any = {name: np.array(row[name], kind)[None, None] for name, kind in kinds.items()}
+    if lag is not None:
+        u = acted(row["sent"], row["times"], row["interval"], lag)
+        made["action"] = u.astype(np.float32)[None, None]
+    return Transition(**made)
 
 
 class RowLearner:
@@ -108,6 +116,7 @@ class RowLearner:
         self.programs = loop.halves(state)
         self.in_order = any(each.data == "latest" for each in loop.agent.learners.values())
         self.read = self.learned = 0  # rows in the memory, and those that were learned from
+        self.lag: float | None = None  # [s] of `transition`
         self.clear()
 
     def clear(self) -> None:
@@ -128,16 +137,26 @@ class RowLearner:
         if row is None:
             return False
         gap = np.bool_(before is None or before["stretch"] != row["stretch"])
-        memory = self.programs[0](self.state.memory, transition(row), gap)
+        memory = self.programs[0](self.state.memory, transition(row, self.lag), gap)
         self.state = self.state.replace(memory=jax.block_until_ready(memory))
         self.read += 1
         return True
+
+    def relabel(self, lag: float) -> None:
+        """Learn from what acted by a lag [s] from now on, also in the decisions in the memory."""
+        self.lag, memory, o = lag, self.state.memory, self.loop.agent.spec.obs
+        rows, size = np.array(memory.rows), memory.rows.shape[1]
+        for number in range(max(self.read - size, 0), self.read):
+            u = transition(self.row_at(number), lag).action[0, 0]
+            slot = (int(memory.count[0]) - self.read + number) % size
+            rows[0, slot, 0, o : o + len(u)] = u
+        self.state = self.loop.on_devices(self.state.replace(memory=memory.replace(rows=rows)))
 
     def learn(self, i: int = 0) -> Any:
         """Make the updates of a decision, with its metrics in row i; returns its row."""
         row, before = self.row_at(self.learned), self.row_at(self.learned - 1)
         first = np.bool_(before is None or before["episode"] != row["episode"])
-        given = np.int32(i), transition(row), first, np.int32(self.learned)
+        given = np.int32(i), transition(row, self.lag), first, np.int32(self.learned)
         self.state, self.metrics = self.programs[1](self.state, self.metrics, *given)
         jax.block_until_ready(self.state.key)
         self.learned += 1

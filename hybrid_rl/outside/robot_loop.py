@@ -22,6 +22,7 @@ from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import WorldError
 from hybrid_rl.files.atomic import own_folder
 from hybrid_rl.outside import handover
+from hybrid_rl.outside.lag import known_lag, published_lag
 from hybrid_rl.outside.learner import RowLearner, RowLoop
 from hybrid_rl.outside.robot_process import RobotProcess
 from hybrid_rl.outside.row_log import RowLog
@@ -87,11 +88,13 @@ class RobotProgram:
         while len(host) < count and not self.loop.cut:
             now = time.monotonic()
             reads = not learner.owes or (learner.read < most and now < until)
+            self._take_lag()
             if reads and learner.observe():
                 self.process.tries = 0
             elif learner.owes:
                 row, updates = learner.learn(len(host)), updates + self._due(first + len(host))
-                host.append([row[name] for name in OWN.values()])
+                lag = ((learner.lag or 0.0) + row["age"]) / self.env.spec.dt
+                host.append([*(row[name] for name in OWN.values()), lag])
                 until = 0.0 if learner.in_order else 2 * time.monotonic() - now
             else:
                 self.loop.cut |= self.process.ended
@@ -111,6 +114,17 @@ class RobotProgram:
         held, given = int(memory.count[0]), agent.replay.num_demonstrated(1)
         self.learner.read = max(step, held - given - max(-agent.first_update, 0))
         return self.learner.read + memory.rows.shape[1] - held
+
+    def _take_lag(self) -> None:
+        """Learn from what acted, once it is known how late: given, or by all random decisions."""
+        learner, folder, count = self.learner, self.loop.folder, self.loop.agent.random_steps
+        if learner.lag is not None or learner.read < count:
+            return
+        if (lag := known_lag(self.env, folder)) is None:
+            lag = published_lag(folder, np.array([*map(self.log.read, range(count))]))
+        learner.relabel(lag)
+        line = f"an action acts {1e3 * lag:.0f} ms after it is sent"
+        print(f"hybrid_rl: {self.env.name}: {line}", file=sys.stderr, flush=True)
 
     def _due(self, step: int) -> int:
         """Gradient steps of all learners after decision `step`."""
@@ -145,7 +159,7 @@ class RobotProgram:
 
     def _metrics(self, own: list[list[float]]) -> dict[str, np.ndarray]:
         """The rows of this call, with the robot's own numbers."""
-        names = [*OWN, "updates_per_s", "behind"]
+        names = [*OWN, "lag", "updates_per_s", "behind"]
         table = np.array(own, np.float32).reshape(len(own), len(names), 1)
         rows = {name: row[: len(own)] for name, row in jax.device_get(self.learner.metrics).items()}
         return rows | {f"robot/{name}": table[:, k] for k, name in enumerate(names)}

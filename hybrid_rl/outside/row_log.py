@@ -11,6 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
+from hybrid_rl.envs.adapters.robot import PENDING
+from hybrid_rl.errors import UsageError
 from hybrid_rl.files.atomic import own_file
 from hybrid_rl.types import Spec
 
@@ -28,6 +30,9 @@ def row_type(spec: Spec) -> np.dtype:
             ("time", "<f8"),  # [s] of the decision, since the epoch
             ("obs", "<f4", spec.obs),
             ("action", "<f4", spec.act),  # that was executed, from -1 to 1
+            ("sent", "<f4", (PENDING + 1, spec.act)),  # it and those before, the newest first
+            ("times", "<f4", PENDING + 1),  # [s] when they were sent, since the observation
+            ("interval", "<f4"),  # [s] until the next observation
             ("reward", "<f4"),
             ("terminated", "<i4"),
             ("truncated", "<i4"),
@@ -46,9 +51,11 @@ class RowLog:
     """The rows of one robot in `file`."""
 
     def __init__(self, file: Path, spec: Spec) -> None:
-        """Open or create the file."""
+        """Open or create the file; UsageError for rows of another kind."""
         self.kind = row_type(spec)
         self._file = own_file(file, os.O_RDWR | os.O_CREAT | os.O_APPEND)
+        if self.count() and self.read(0) is None:
+            raise UsageError(f"{file}: has rows of another version or robot; begin another run")
 
     def count(self) -> int:
         """Rows in the file."""

@@ -202,7 +202,7 @@ def _seeds(config: DictConfig) -> tuple[int, ...]:
 
 def _follows(episode: Episode) -> bool:
     """True if the rewards of the episodes follow from the decisions in a memory."""
-    exact = not episode.delay and not episode.action_noise and episode.sensor_noise == 0.0
+    exact = not episode.late and not episode.action_noise and episode.sensor_noise == 0.0
     return exact and episode.relabels
 
 

@@ -14,7 +14,7 @@ from omegaconf import DictConfig, ListConfig, OmegaConf, open_dict
 from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl.envs.adapters.external import External, check_world
-from hybrid_rl.envs.adapters.robot import Robot
+from hybrid_rl.envs.adapters.robot import PENDING, Robot
 from hybrid_rl.envs.mujoco.physics import resolve as resolve_physics
 from hybrid_rl.errors import PartError, UsageError
 from hybrid_rl.fields import FieldError
@@ -42,6 +42,7 @@ from hybrid_rl.settings.values import (
 )
 from hybrid_rl.settings.words import forced, name, of_job, raw_values, typed_values
 from hybrid_rl.training.agent import Agent
+from hybrid_rl.training.ahead import ahead
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import Imagination
 
@@ -184,8 +185,10 @@ def built(config: DictConfig) -> Run:
 
 def _acting(parts: DictConfig) -> tuple[Episode, dict[str, Controller]]:
     """The episodes, and the controllers as they act in training."""
-    each = parts.controllers.items()  # after the episodes, whose reward they may hold, too
-    return _episode(parts), {k: _instantiate(v, f"controllers.{k}") for k, v in each}
+    episode = _episode(parts)  # first, as controllers may hold their reward, too
+    each = ((k, _instantiate(v, f"controllers.{k}")) for k, v in parts.controllers.items())
+    lag, most = episode.known_lag, PENDING * isinstance(episode.env, Robot)
+    return episode, {k: ahead(controller, lag, most) for k, controller in each}
 
 
 def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller], Imagination | None]:

@@ -73,7 +73,8 @@ def _check_groups(config: DictConfig) -> None:
 
 def time_limit(env: External | Robot, given: Mapping[str, Any]) -> dict[str, int]:
     """The time limit of an environment on the host [decisions], if `given` has none."""
-    for key in ("delay", "sensor_noise", "action_noise", "randomise", *PAID):
+    late, noise = ("delay", "jitter", "loss", "lag"), ("sensor_noise", "action_noise")
+    for key in (*late, *noise, "randomise", *PAID):
         value = given.get(key)
         if isinstance(value, dict):  # of names and ranges
             value = {name: each for name, each in value.items() if each is not None}

@@ -212,9 +212,11 @@ class Agent:
     ) -> AgentState:
         """`state` after action [E, m] led from `state.env` to `now` [E, ...].
 
-        The memory gets the decision, and where an episode is done, another one begins. A world that
-        resets itself gives `after` [E, ...]: `now`, or the first state of the next episode.
+        The memory gets the decision, with the action that acted if some act late, and where an
+        episode is done, another one begins. A world that resets itself gives `after` [E, ...]:
+        `now`, or the first state of the next episode.
         """
+        action = self.episode.acted(action, now)
         new = Transition(state.env.obs, action, now.reward, now.terminated, now.truncated, now.obs)
         if after is None:
             keys = Keys.of(state.key, self.num_envs) if keys is None else keys

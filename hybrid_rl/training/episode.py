@@ -1,9 +1,11 @@
 """Episodes of an environment: time limit, action repeat, resets, and disturbances on request.
 
 A controller sees o + sensor_noise N(0, I); environment, reward and constraint see o. Its action u
-arrives `delay` decisions later, as clip(u + action_noise N(0, I)). An expert who is disturbed in
-this way demonstrates how to return (Laskey et al. 2017, "DART: noise injection for robust imitation
-learning"). With `randomise` each episode has another body (`envs/mujoco/randomised.py`).
+arrives `delay` + `jitter` U(0, 1) seconds later, as clip(u + action_noise N(0, I)), or is lost, and
+never overtakes another. What acted in a decision is `state.clock.sent.acted`. An expert who is
+disturbed in this way demonstrates how to return (Laskey et al. 2017, "DART: noise injection for
+robust imitation learning"). With `randomise` each episode has another body
+(`envs/mujoco/randomised.py`).
 """
 
 from collections.abc import Mapping
@@ -19,13 +21,13 @@ from hybrid_rl.core.batching import when_any, where
 from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.envs.mujoco.randomised import Ranges
 from hybrid_rl.errors import UsageError
-from hybrid_rl.fields import Count, FieldError, Natural, NotNegative, part
+from hybrid_rl.fields import Count, FieldError, Fraction, NotNegative, part
 from hybrid_rl.protocols import Constraint, Env, Goal
 from hybrid_rl.protocols.contract import Contract
 from hybrid_rl.training.wrappers import (
     Constrained,
-    Delayed,
     Disturbed,
+    Late,
     Limited,
     Paid,
     Randomised,
@@ -58,7 +60,10 @@ class Episode:
     env: Env
     steps: Count = 1000  # decisions until the time limit
     action_repeat: Count = 1
-    delay: Natural = 0  # decisions until an action arrives
+    delay: NotNegative = 0.0  # [s] until an action arrives
+    jitter: NotNegative = 0.0  # [s] most that it is later than that; never before another
+    loss: Fraction = 0.0  # probability that it never arrives: the last that did goes on acting
+    lag: NotNegative | None = None  # [s] of it that the method knows; None: delay and jitter / 2
     sensor_noise: NotNegative | tuple[NotNegative, ...] = 0.0  # std of the observation, or [o]
     action_noise: NotNegative = 0.0  # [u] std of what is added to an action when it arrives
     randomise: Ranges | None = None  # of each episode's body; also as {NAME: [low, high]}
@@ -90,6 +95,22 @@ class Episode:
         return tuple(np.atleast_1d(self.sensor_noise).tolist())
 
     @property
+    def late(self) -> bool:
+        """Whether actions arrive late, or not at all."""
+        return bool(self.delay or self.jitter or self.loss)
+
+    @property
+    def known_lag(self) -> float:
+        """The lag [decisions] that the method knows, from an observation until its action acts."""
+        lag = self.delay + self.jitter / 2 if self.lag is None else self.lag
+        return round(lag / self.spec.dt, 6)
+
+    def acted(self, action: Array, now: EnvState) -> Array:
+        """The action [..., m] that led to `now`: what acted of those sent, if there is a lag."""
+        sent = None if now.clock is None else now.clock.sent
+        return sent.acted if sent is not None and self.known_lag else action
+
+    @property
     def world(self) -> Env:
         """The environment with everything that is around it (see `wrappers`)."""
         env = self.env if self.randomise is None else Randomised(self.env, self.randomise)
@@ -97,7 +118,9 @@ class Episode:
         env = Limited(Repeated(env, self.action_repeat), self.steps)
         env = env if self.constraint is None else Constrained(env, self.constraint)
         env = Disturbed(env, self.action_noise) if self.action_noise else env
-        env = Delayed(env, self.delay) if self.delay else env
+        if self.late:
+            delay, jitter = (round(t / env.spec.dt, 6) for t in (self.delay, self.jitter))
+            env = Late(env, delay, jitter, self.loss)
         return Sensed(env, self.std) if any(self.std) else env
 
     @property

@@ -1,6 +1,6 @@
 """Wrappers of an environment, each an environment itself; `Episode` puts them together.
 
-    Sensed(Delayed(Disturbed(Constrained(Limited(Repeated(Paid(Randomised(env))))))))
+    Sensed(Late(Disturbed(Constrained(Limited(Repeated(Paid(Randomised(env))))))))
 
 A wrapper keeps what it remembers in the `Clock` of the state. The outer ones see what the inner
 ones made: a limit counts rewards before a constraint's price, a constraint judges the action that
@@ -8,6 +8,7 @@ arrived and the observation without noise.
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -15,9 +16,11 @@ from jax import Array
 
 from hybrid_rl.core.batching import where
 from hybrid_rl.envs import sensor_noise
+from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.envs.mujoco.randomised import Ranges
 from hybrid_rl.protocols import Constraint, Env, Goal
-from hybrid_rl.types import Clock, EnvState, Spec
+from hybrid_rl.types import Clock, EnvState, PyTree, Sent, Spec
 
 VIOLATED = "violation"  # in `metrics`: 1 where the decision violates the constraint, else 0
 
@@ -152,21 +155,82 @@ class Disturbed(Around):
 
 
 @dataclass(frozen=True)
-class Delayed(Around):
-    """Actions arrive later; the first are 0."""
+class Late(Around):
+    """Actions arrive later, in the order in which they were sent; the first are 0.
 
-    decisions: int
+    One that arrives within a decision acts from then on, and until then the one before. Of several
+    only the newest acts. In MuJoCo that is true to a step of the physics; a world that has one step
+    a decision, or steps in another way, gets the mean of both actions, by their shares.
+    """
+
+    delay: float  # [decisions]
+    jitter: float = 0.0  # [decisions] most that an action is later than that, uniform
+    loss: float = 0.0  # probability that an action never arrives
 
     def reset(self, key: Array) -> EnvState:
-        """The first state, with actions on their way."""
-        state, late = super().reset(key), jnp.zeros((self.decisions, self.spec.act))
-        return state.replace(clock=state.clock._replace(late=late))
+        """The first state, with no action sent."""
+        state, count = super().reset(key), int(self.delay + self.jitter) + 1
+        random, drawing = self.jitter or self.loss, jax.random.fold_in(key, 8)
+        none, waits = jnp.zeros((count, self.spec.act)), jnp.full(count, jnp.inf)
+        sent = Sent(none, waits, none[0], none[0], jax.random.key_data(drawing) if random else None)
+        data = _held(state.data, 0) if self._steps(state) else state.data
+        return state.replace(data=data, clock=state.clock._replace(sent=sent))
 
     def step(self, state: EnvState, action: Array) -> EnvState:
-        """The state after the action that arrives."""
-        late = jnp.concatenate((state.clock.late, action[None]))
-        clock = state.clock._replace(late=late[1:])
-        return super().step(state.replace(clock=clock), late[0])
+        """The state after the actions that act."""
+        sent, steps = self._send(state.clock.sent, action), self._steps(state)
+        now = sent.waits < 1
+        last, any_ = len(now) - 1 - jnp.argmax(now[::-1]), now.any()
+        arriving = jnp.where(any_, sent.actions[last], sent.acting)
+        share = jnp.where(any_, jnp.maximum(sent.waits[last], 0), 0)  # of the one before
+        if steps:
+            share = jnp.round(share * steps) / steps
+        acted = share * sent.acting + (1 - share) * arriving
+        waits = jnp.where(now, jnp.inf, sent.waits - 1)
+        sent = sent._replace(waits=waits, acting=arriving, acted=acted)
+        state = state.replace(clock=state.clock._replace(sent=sent))
+        if not steps:
+            return super().step(state, acted)
+        held = jnp.round(share * steps).astype(jnp.int32)
+        return super().step(state.replace(data=_held(state.data, held)), arriving)
+
+    def _send(self, sent: Sent, action: Array) -> Sent:
+        """`sent` with one action more, the oldest of which cannot arrive any more."""
+        wait, drawing = jnp.float32(self.delay), sent.drawing
+        if drawing is not None:
+            key, losing, later = jax.random.split(jax.random.wrap_key_data(drawing), 3)
+            wait = wait + self.jitter * jax.random.uniform(key)
+            before = jnp.where(jnp.isfinite(sent.waits), sent.waits, -jnp.inf).max()
+            lost = jax.random.uniform(losing) < self.loss
+            wait = jnp.where(lost, jnp.inf, jnp.maximum(wait, before))
+            drawing = jax.random.key_data(later)
+        actions = jnp.concatenate((sent.actions[1:], action[None]))
+        waits = jnp.append(sent.waits[1:], wait)
+        return sent._replace(actions=actions, waits=waits, drawing=drawing)
+
+    def _steps(self, state: EnvState) -> int:
+        """Steps of the physics in a decision; 0: actions arrive between decisions, or no MuJoCo."""
+        if float(self.delay).is_integer() and not self.jitter:
+            return 0
+        kept = [each for each in _leaves(state.data) if isinstance(each, PhysicsState)]
+        if not kept:
+            return 0
+        steps = round(self.spec.dt / mjcf.load(kept[0].asset).opt.timestep)
+        return steps if steps > 1 else 0
+
+
+def _leaves(data: PyTree) -> list[Any]:
+    return jax.tree.leaves(data, is_leaf=lambda leaf: isinstance(leaf, PhysicsState))
+
+
+def _held(data: PyTree, steps: Array | int) -> PyTree:
+    """`data` whose physics keep the controls of before for so many [] steps."""
+
+    def one(leaf: Any) -> Any:
+        known = isinstance(leaf, PhysicsState)
+        return leaf.replace(held=jnp.asarray(steps, jnp.int32)) if known else leaf
+
+    return jax.tree.map(one, data, is_leaf=lambda leaf: isinstance(leaf, PhysicsState))
 
 
 @dataclass(frozen=True)

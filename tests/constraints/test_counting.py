@@ -58,7 +58,7 @@ def test_noise_of_sensors_violates_nothing() -> None:
 
 def test_effort_counts_the_action_that_arrives() -> None:
     """Clipped, and late."""
-    late = Episode(WORLD, 20, delay=1, constraint=Effort(0.9))
+    late = Episode(WORLD, 20, delay=WORLD.spec.dt, constraint=Effort(0.9))
     state, step, seen = late.reset(jax.random.key(0)), jax.jit(late.step), []
     for u in (5.0, 0.5, -1.0, 0.0):
         state = step(state, jnp.array([u]))

@@ -64,7 +64,7 @@ def registry(monkeypatch):
 def test_it_passes_the_check_of_environments():
     env = Playground("Slider")
     assert env.spec == Spec(obs=2, act=1, dt=0.02)
-    assert check(env) == ()
+    check(env)
 
 
 def test_episodes_run_under_vmap_and_scan_and_reset_themselves():

@@ -12,12 +12,14 @@ import numpy as np
 import pytest
 from counting import LINE, Counting, broken, lost, moved, of
 
+from hybrid_rl.envs.adapters.robot import PENDING
 from hybrid_rl.errors import WorldError
 from hybrid_rl.outside import actor as actors
 from hybrid_rl.outside.actor import Actor
 from hybrid_rl.outside.robot_process import RobotProcess
 from hybrid_rl.outside.row_log import RowLog
 from hybrid_rl.settings import build as config
+from hybrid_rl.training.ahead import AheadState
 
 
 @pytest.fixture(scope="module")
@@ -51,19 +53,43 @@ def test_rows_are_decisions_in_order(agent, tmp_path):
             assert abs(after["action"] - row["action"]) <= 0.1 + 1e-6
 
 
-def test_past_actions_end_the_observation(agent, tmp_path):
-    run = config.build(config.load([*LINE, "env.past_actions=2"]))
-    _, rows = moved(run.agent, tmp_path, Counting, past_actions=2)
-    assert rows[0]["obs"].shape == (6,)
-    triples = [
-        three
-        for three in zip(rows, rows[1:], rows[2:], strict=False)
-        if len({int(row["stretch"]) for row in three}) == 1
-    ]
-    assert len(triples) > 5
-    for one, two, three in triples:
-        past = [float(two["action"][0]), float(one["action"][0])]
-        assert three["obs"][4:].tolist() == past
+def test_a_row_holds_what_was_sent_and_when(agent, tmp_path):
+    """The decisions before it, as far as they follow each other; at first the safe action."""
+    _, rows = moved(agent, tmp_path, Counting)
+    assert rows[0]["sent"][1:, 0].tolist() == [-0.5] * 4
+    pairs = [(a, b) for a, b in pairwise(rows) if a["stretch"] == b["stretch"]]
+    assert len(pairs) > 5
+    for row, after in pairs:
+        assert row["sent"][0] == row["action"]
+        assert row["times"][0] == pytest.approx(row["age"], abs=1e-5)
+        assert np.array_equal(after["sent"][1:], row["sent"][:-1])
+        ago = row["times"] - row["interval"]  # the same times, since the next observation
+        np.testing.assert_allclose(after["times"][1:], ago[:-1], atol=1e-5)
+
+
+def test_it_acts_at_the_observation_predicted_for_then(agent, tmp_path):
+    """What was sent, and how late, by the rows and the lag: the controller's action says both."""
+
+    @dataclass(frozen=True)
+    class Telling:
+        inner: tuple = ()
+
+        def init(self, spec):
+            return AheadState(jnp.zeros((PENDING, 1)), jnp.zeros(()), ())
+
+        def act(self, params, state, obs, key):
+            return jnp.where(obs[1] % 2 == 0, 0.5 * state.sent[-1], state.lag[None] / 8), state, {}
+
+        def greedy(self):
+            return self
+
+    _, rows = moved(replace(agent, controller=Telling()), tmp_path, Counting, lag=0.006)
+    half = [row for row in rows if row["obs"][1] % 2 == 0]
+    assert all(row["action"] == pytest.approx(0.5 * row["sent"][1]) for row in half)
+    lags = [8 * row["action"][0] for row in rows if row["obs"][1] % 2]
+    assert len(lags) > 10
+    assert 1.5 <= min(lags) < 2  # and the age of the observation, of a period of 4 ms
+    assert max(lags) <= PENDING
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 import threading
 import time
+from dataclasses import replace
 from itertools import pairwise
 
 import jax.numpy as jnp
@@ -11,6 +12,9 @@ from counting import LINE, Counting, broken, lost, moved, of
 
 from hybrid_rl.errors import UsageError
 from hybrid_rl.files.atomic import own_folder
+from hybrid_rl.outside import lag as lags
+from hybrid_rl.outside.lag import acted, known_lag
+from hybrid_rl.outside.learner import transition
 from hybrid_rl.outside.loops import loop_of
 from hybrid_rl.outside.robot_loop import RobotProgram
 from hybrid_rl.outside.robot_process import RobotProcess
@@ -33,7 +37,11 @@ def test_the_learner_learns_from_the_rows(agent, tmp_path, monkeypatch):
     state, metrics = program(state, jnp.int32(0), jnp.int32(20))
     state, more = program(state, jnp.int32(20), jnp.int32(10))
     memory = np.asarray(state.memory.rows)[0, :30, 0]
-    assert np.array_equal(memory[:, :5], [[*row["obs"], *row["action"]] for row in rows[:30]])
+    assert np.array_equal(memory[:, :4], [row["obs"] for row in rows[:30]])
+    each = [acted(row["sent"], row["times"], row["interval"], 0.0) for row in rows[:30]]
+    np.testing.assert_allclose(memory[:, 4:5], each, atol=1e-6)  # no random rows, no lag
+    assert not np.array_equal(memory[:, 4:5], [row["action"] for row in rows[:30]])
+    assert known_lag(loop.agent.episode.env, loop.folder) == 0
     assert np.array_equal(memory[:, -4:], [row["next_obs"] for row in rows[:30]])
     cut = [row["stretch"] != after["stretch"] for row, after in pairwise(rows[:31])]
     ended = [bool(row["terminated"]) for row in rows[:30]]
@@ -82,3 +90,27 @@ def test_one_robot_has_one_learner(word):
     run = config.build(config.load([*LINE, word]))
     with pytest.raises(UsageError, match="one robot has one learner"):
         loop_of(run.agent, run.seeds, 20)
+
+
+def test_the_lag_is_estimated_from_the_random_decisions(agent, tmp_path, monkeypatch):
+    """Then the memory holds what acted, from its first row on, and the robot's process knows it."""
+    monkeypatch.setattr(lags, "ENOUGH", 10)
+    monkeypatch.setattr(lags, "estimated", lambda *given: 0.005)
+    monkeypatch.setattr(RobotProcess, "watch", lambda self: None)
+    loop = loop_of(replace(of(agent, Counting), random_steps=15), (0,), 20, tmp_path)
+    _, rows = moved(agent, own_folder(loop.folder), Counting)
+    state = loop.init()
+    program = loop.compile(state)
+    for step in (0, 10):
+        state, metrics = program(state, jnp.int32(step), jnp.int32(10))
+        read = int(state.memory.count[0])
+        kept = np.asarray(state.memory.rows)[0, :read, 0, 4:5]
+        lag = 0.005 if read >= 15 else None
+        each = [transition(row, lag).action[0, 0] for row in rows[:read]]
+        np.testing.assert_allclose(kept, each, atol=1e-6)
+    assert read >= 15
+    assert lags.known_lag(loop.agent.episode.env, loop.folder) == 0.005
+    robot_lag = metrics["robot/lag"][-1, 0]
+    assert robot_lag == pytest.approx((0.005 + rows[19]["age"]) / Counting.dt, rel=1e-4)
+    again, _ = loop.compile(state)(state, jnp.int32(20), jnp.int32(5))  # a resumed learner
+    assert again.memory.rows.shape == state.memory.rows.shape

@@ -7,6 +7,7 @@ import resource
 import numpy as np
 import pytest
 
+from hybrid_rl.errors import UsageError
 from hybrid_rl.outside.row_log import RowLog
 from hybrid_rl.types import Spec
 
@@ -74,3 +75,10 @@ def test_a_damaged_row_is_not_read(log, tmp_path):
 
 def test_an_empty_file_has_no_last_row(tmp_path):
     assert RowLog(tmp_path / "rows", SPEC).recover() is None
+
+
+def test_rows_of_another_kind_are_refused_and_stay(log, tmp_path):
+    before = (tmp_path / "rows").read_bytes()
+    with pytest.raises(UsageError, match="rows: has rows of another version or robot; begin"):
+        RowLog(tmp_path / "rows", SPEC._replace(act=2))
+    assert (tmp_path / "rows").read_bytes() == before

@@ -179,7 +179,7 @@ def test_what_no_robot_can_have_is_named(name, value, line):
     [
         (["task=robot", "algo=sac"], "give MODULE:CLASS of your robot"),
         ([*LINE, "env.stale=0"], r"env\.stale=0: must be above 0"),
-        ([*LINE, "env.past_actions=-1"], "must be a whole number, 0 or more"),
+        ([*LINE, "env.lag=-1"], "must be 0 or more"),
         ([*LINE, "episode.delay=1"], "put a Gymnasium wrapper around"),
     ],
 )

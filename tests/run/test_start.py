@@ -170,7 +170,7 @@ def test_learners_that_are_too_few_or_diverged_begin_nothing(source, monkeypatch
 
 
 @pytest.mark.parametrize(
-    "given", [{"action_repeat": 2}, {"delay": 1}, {"action_noise": 0.1}, {"sensor_noise": 0.1}]
+    "given", [{"action_repeat": 2}, {"delay": 0.05}, {"action_noise": 0.1}, {"sensor_noise": 0.1}]
 )
 def test_another_reward_follows_only_from_what_the_world_itself_saw(given):
     world = Pendulum()

@@ -114,7 +114,7 @@ class Echo(Counter):
 
 def test_actions_arrive_later() -> None:
     """Two decisions later; until then they are 0."""
-    episode = Episode(Echo(), delay=2)
+    episode = Episode(Echo(), delay=0.2)
     state, seen = episode.reset(jax.random.key(0)), []
     for u in (1.0, 2.0, 3.0, 4.0):
         state = episode.step(state, jnp.array([u]))

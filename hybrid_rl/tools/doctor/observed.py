@@ -119,7 +119,7 @@ def action(run: Evidence) -> str | None:
     if late and not effect[0] and together[most] > HISTORY:
         return (
             f"an action acts {late} decision{'s' * (late > 1)} later ({shown}): a delay; shorten "
-            "it, or show the learner its last actions (env.past_actions of task=robot)"
+            "it, or say it (episode.delay; env.lag of task=robot)"
         )
     if effect[1:].sum() > OLDER * effect[0]:
         return (

@@ -123,8 +123,7 @@ class Panel:
         self._body.visible = bool(found)
 
     def _changed(self, key: str, value: float) -> None:
-        text = f"{int(value) if key == 'episode.delay' else value:g}"
-        self._choose(changes={**self._wishes.choice.changes, key: text})
+        self._choose(changes={**self._wishes.choice.changes, key: f"{value:g}"})
 
     def _slider(self, one: Slider, moved: Any) -> Any:
         label = one.key.partition(".")[2].replace("_", " ")

@@ -70,7 +70,9 @@ def _bare(state: EnvState, like: EnvState) -> EnvState:
     """`state` with only the memory, the metrics and the own fields of the model that `like` has."""
     info, data = {name: state.info[name] for name in like.info}, state.data
     if isinstance(data, PhysicsState):
-        data = data.replace(fields={name: data.fields[name] for name in like.data.fields})
+        held = None if like.data.held is None else data.held
+        own = {name: data.fields[name] for name in like.data.fields}
+        data = data.replace(fields=own, held=held)
     metrics = {name: state.metrics[name] for name in like.metrics}
     clock = None
     if like.clock is not None:

@@ -19,7 +19,7 @@ from hybrid_rl.settings.build import PAID
 from hybrid_rl.training.contract import needs_world
 from hybrid_rl.types import Params
 
-DISTURBED = {"delay": 5.0, "sensor_noise": 0.5, "action_noise": 0.5}  # of an episode -> the most
+DISTURBED = {"delay": 0.25, "sensor_noise": 0.5, "action_noise": 0.5}  # of an episode -> the most
 EFFORT = ("samples", "elites", "refined", "iterations")  # fields of a planner
 QUICK = 4  # times fewer of them
 SPAN = 5.0  # a slider ends at so many times its value; at so many, of what is 0 or has a sign

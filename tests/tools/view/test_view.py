@@ -119,15 +119,15 @@ def test_another_body_acts_between_two_decisions_and_a_bad_one_never():
     np.testing.assert_array_equal(one.state.data.qpos, before)  # goes on, no new episode
     one.advance()
     assert one.state.clock.decision == 2
-    one.choose(Choice("policy", changes={"episode.delay": "2"}))  # has another state
+    one.choose(Choice("policy", changes={"episode.delay": "0.066"}))  # has another state
     settle(one)
-    assert one.state.clock.late.shape == (2, 1)
+    assert one.state.clock.sent.actions.shape == (3, 1)
     one.choose(Choice("policy", changes={"env.mass": "-1"}))
     settle(one)
     assert "mass=-1" in one.problem
     one.exchange()
     assert not one.compiling  # it is not asked for again
-    assert one.cast.world.episode.delay == 2
+    assert one.cast.world.episode.delay == 0.066
     one.advance()
     one._enter(replace(one.cast, actor=replace(one.cast.actor, begin=lambda: "no plan")))
     assert one._control == "no plan"  # another one acts, who has a state of its own

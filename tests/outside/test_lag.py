@@ -1,0 +1,47 @@
+"""Which actions acted, and how late, from times alone."""
+
+import numpy as np
+import pytest
+
+from hybrid_rl.outside import lag as lags
+
+DT, KEPT = 0.05, 5  # [s] of a decision; actions that are remembered
+
+
+def test_shares_are_those_of_the_interval():
+    """The own action 30 ms after the observation, the one before 60 ms earlier, one more."""
+    times, interval = np.array([0.01, -0.05, -0.09]), np.array(0.05)
+    for late, want in ((0.0, [0.8, 0.2, 0]), (0.02, [0.4, 0.6, 0]), (0.06, [0, 0.8, 0.2])):
+        np.testing.assert_allclose(lags.shares(times, interval, late), want, atol=1e-9)
+    np.testing.assert_allclose(lags.shares(times, interval, 9.0), [0, 0, 1], atol=1e-9)
+    sent = np.array([[1.0, 0.0], [0.0, 1.0], [0.5, 0.5]])
+    np.testing.assert_allclose(lags.acted(sent, times, interval, 0.06), [0.1, 0.9], atol=1e-9)
+
+
+def moved(late: float, jitter: float, decisions: int = 1000) -> tuple:
+    """An oscillator with two motors, in steps of 1 ms, whose decisions take 50 ms or so."""
+    rng = np.random.default_rng(0)
+    period = np.maximum(DT + jitter * rng.uniform(-1, 1, decisions), 0.01)
+    begins = np.concatenate([[0.0], np.cumsum(period)])
+    u = rng.uniform(-1, 1, (decisions, 2))
+    x, obs, now = np.zeros(4), [], 0
+    arrives = begins[:-1] + 0.004 + late * DT
+    for t in np.arange(0, begins[-1] + 1e-3, 1e-3):
+        while now <= decisions and t >= begins[now] - 1e-9:
+            obs.append(x.copy())
+            now += 1
+        k = np.searchsorted(arrives, t + 1e-9) - 1
+        force = 8 * (u[k] if k >= 0 else np.zeros(2)) - 9 * x[:2] - 0.4 * x[2:]
+        x = x + 1e-3 * np.concatenate([x[2:], force])
+    obs = np.array(obs[: decisions + 1]) + 1e-3 * rng.normal(size=(decisions + 1, 4))
+    rows = np.arange(KEPT, decisions)
+    sent = np.stack([u[rows - i] for i in range(KEPT)], axis=1)
+    times = np.stack([begins[rows - i] + 0.004 - begins[rows] for i in range(KEPT)], axis=1)
+    return obs[rows], obs[rows + 1], sent, times, period[rows]
+
+
+@pytest.mark.parametrize("jitter", [0.0, 0.02])
+@pytest.mark.parametrize("late", [0.0, 0.3, 1.0, 1.45, 2.3])
+def test_the_lag_is_found_within_a_tenth(late, jitter):
+    found = lags.estimated(*moved(late, jitter)) / DT
+    assert found == pytest.approx(late, rel=0.1, abs=0.05)
