@@ -155,10 +155,11 @@ def choices(kind: Any) -> tuple[Any, ...]:
     return get_args(kind) if get_origin(kind) in (Union, UnionType) else (kind,)
 
 
-def check_all(part: Any) -> None:
-    """Raise FieldError for a value that a field of any dataclass does not accept."""
+def check_all(part: Any) -> Any:
+    """The part; FieldError for a value that a field of it, a dataclass of any sort, refuses."""
     for field in fields(part) if is_dataclass(part) else ():
         check(part, field.name, field.type)
+    return part
 
 
 def method_of(kind: Any) -> str:
