@@ -162,11 +162,6 @@ def check_all(part: Any) -> Any:
     return part
 
 
-def method_of(kind: Any) -> str:
-    """The method that a value of this type must have; empty: none."""
-    return get_args(kind)[1].has if get_origin(kind) is Annotated else ""
-
-
 def check(part: object, name: str, kind: Any) -> Any:
     """The value of a field as its type has it: tuples for lists, floats for whole numbers.
 
