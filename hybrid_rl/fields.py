@@ -155,15 +155,11 @@ def choices(kind: Any) -> tuple[Any, ...]:
     return get_args(kind) if get_origin(kind) in (Union, UnionType) else (kind,)
 
 
-def check_all(part: Any) -> None:
-    """Raise FieldError for a value that a field of any dataclass does not accept."""
+def check_all(part: Any) -> Any:
+    """The part; FieldError for a value that a field of it, a dataclass of any sort, refuses."""
     for field in fields(part) if is_dataclass(part) else ():
         check(part, field.name, field.type)
-
-
-def method_of(kind: Any) -> str:
-    """The method that a value of this type must have; empty: none."""
-    return get_args(kind)[1].has if get_origin(kind) is Annotated else ""
+    return part
 
 
 def check(part: object, name: str, kind: Any) -> Any:

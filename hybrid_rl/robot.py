@@ -71,7 +71,7 @@ def _hurry() -> None:
 
 def main() -> None:
     """The command."""
-    given: Any = read(__doc__, ARGUMENTS)[0]
+    given = read(__doc__, ARGUMENTS)[0]
     _hurry()  # before XLA makes its threads, which have the same priority
     folder = Path(given["run"])
     files = refuse_link(folder / "robot")

@@ -95,14 +95,6 @@ def test_every_method_and_every_task_learn(task: str, algo: str, tmp_path: Path)
         small.trace(run.agent)
 
 
-@pytest.mark.parametrize("task", ["halfcheetah", "sprk_sand"])
-@pytest.mark.parametrize("algo", ["kle3", "kle3_bayesopt"])
-def test_a_method_that_needs_an_analytic_environment_refuses_others(algo: str, task: str) -> None:
-    """For an environment of MuJoCo, and for one whose observation is not its whole state."""
-    with pytest.raises(config.UsageError, match="needs an analytic environment"):
-        config.build(config.load([f"task={task}", f"algo={algo}"]))
-
-
 def test_settings_can_be_overridden_on_the_command_line() -> None:
     """They apply after the method and before other overrides; one key for one thing."""
     c = config.load(["settings=light", "total_steps=10", "algo=hybrid_stochastic"])

@@ -116,9 +116,7 @@ def _made(node: Any, near: Path | None, where: str) -> Any:
         return fields
     kind = part_class(node[TARGET], near)
     try:
-        made = kind(**fields)
-        check_all(made)
-        return made
+        return check_all(kind(**fields))
     except FieldError as error:
         raise (error.at(where) if where else error) from None
     except ValueError:

@@ -40,7 +40,7 @@ from hybrid_rl.settings.values import (
     time_limit,
     whole,
 )
-from hybrid_rl.settings.words import forced, name, of_job, raw_values, typed_values
+from hybrid_rl.settings.words import forced, name, of_job, plain, raw_values, typed_values
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.ahead import ahead
 from hybrid_rl.training.episode import Episode
@@ -133,7 +133,7 @@ def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
 
     config: as `compose_raw` gives it.
     """
-    values = resolved(config)
+    values: dict[str, Any] = resolved(config)
     values.pop("sweep", None)
     words = (text for text in overrides if not re.match(r"\+*(sweep|hydra)\.|-", text))
     values["recipe"] = [re.sub(r"\$\{([^}]*)\}", r"$(\1)", text) for text in words]  # no references
@@ -141,14 +141,13 @@ def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
     if values["task"] in ("gymnasium", "playground", "robot"):  # of many environments
         names = (values["env"].get(key) for key in ("make", "id", "name"))
         values["task"] = re.sub(r"[^A-Za-z0-9_.-]", "_", str(next(filter(None, names), "_")))
-    made: Any = OmegaConf.create(values, flags={"struct": True})
-    return made
+    return OmegaConf.create(values, flags={"struct": True})
 
 
 def resolved(config: DictConfig) -> Any:
     """The values of a composed configuration as dicts and lists."""
     try:
-        return OmegaConf.to_container(config, resolve=True)
+        return plain(config, resolve=True)
     except OmegaConfBaseException as error:
         raise UsageError(explain(error)) from error
 
@@ -238,7 +237,7 @@ def physics(config: DictConfig) -> str | None:
 def _on_this_machine(config: DictConfig) -> DictConfig:
     """The sections, in which every copy of the world has its physics resolved."""
     sections = [key for key in (*SECTIONS, *PAID, "imagine") if key in config]
-    parts: Any = OmegaConf.masked_copy(config, sections)
+    parts = OmegaConf.masked_copy(config, sections)
     chosen = physics(config)
 
     def visit(node: Any) -> None:
@@ -255,7 +254,7 @@ def _on_this_machine(config: DictConfig) -> DictConfig:
 
 def _instantiate(node: Any, where: str) -> Any:
     """The part at the key `where`."""
-    values = OmegaConf.to_container(node, resolve=True) if OmegaConf.is_config(node) else node
+    values = plain(node, resolve=True) if OmegaConf.is_config(node) else node
     return build_part(values, where=where)
 
 

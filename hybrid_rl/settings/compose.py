@@ -42,7 +42,7 @@ def keys_of(texts: Sequence[str], hydra: Any) -> list[str]:
 def settings_keys(hydra: Any) -> dict[str, Any]:
     """The keys that the chosen file of `settings` sets."""
     file = chosen(hydra, "settings")
-    found: Any = OmegaConf.to_container(OmegaConf.load(file)) if file else {}
+    found = overrides.plain(OmegaConf.load(file)) if file else {}
     return keys({key: value for key, value in found.items() if key != "defaults"})
 
 

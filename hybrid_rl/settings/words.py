@@ -21,8 +21,7 @@ def parse(texts: Iterable[str]) -> list[Override]:
 
 def of_job(hydra: Any) -> list[str]:
     """The overrides of a job as typed, by Hydra's configuration; `a=${b}` stays as it is."""
-    texts: Any = OmegaConf.to_container(hydra.overrides.task, resolve=False)
-    return typed(texts)
+    return typed(plain(hydra.overrides.task))
 
 
 def name(text: str) -> str:
@@ -76,10 +75,14 @@ def typed(texts: Iterable[str]) -> list[str]:
     return [text.removeprefix("++") for text in texts]
 
 
+def plain(node: Any, resolve: bool = False) -> Any:
+    """A configuration as dicts and lists; its interpolations stay text, unless they resolve."""
+    return OmegaConf.to_container(node, resolve=resolve)
+
+
 def raw_values(config: DictConfig) -> dict[str, Any]:
     """`config` with its interpolations as text."""
-    raw: Any = OmegaConf.to_container(config, resolve=False)
-    return {name: value for name, value in raw.items() if name != "hydra"}
+    return {name: value for name, value in plain(config).items() if name != "hydra"}
 
 
 def value_of(text: str) -> Any:

@@ -101,7 +101,7 @@ def test_commands_take_one_run_of_a_sweep_or_name_them(swept, tmp_path, capfd):
     last = [[r["eval/return"] for r in rows(swept / str(k)) if "eval/return" in r] for k in (0, 3)]
     np.testing.assert_allclose([files[0]["mean"], files[3]["mean"]], last, 1e-4)
     capfd.readouterr()
-    out = tmp_path / "policy.npz"
+    out = tmp_path / "policy.stablehlo"
     assert call(lambda: command.run(export.main), f"run={swept}", f"out={out}") == 2
     line = only_line(capfd)
     assert "holds a sweep; give one of its runs" in line

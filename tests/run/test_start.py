@@ -211,8 +211,7 @@ REFUSED = [  # overrides, words of the line
     ("env.task=track", ": its parameters do not fit: "),
     ("algo=sac", ": its parameters do not fit: "),
     ("resume={source}", "run, resume: give one of them"),
-    ("freeze=[polcy]", "the method's learners are model, policy"),
-    ("freeze=policy", "freeze=policy: must be a list"),
+    ("freeze=[polcy]", "freeze=['polcy']: the method's learners are model, policy"),
     ("pretrain=3", "pretrain=3: what run="),
 ]
 

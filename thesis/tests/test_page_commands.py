@@ -57,10 +57,9 @@ def runs_here(name, given):
     if name == "figures":  # thesis/tests draw the others
         metrics = set(given.get("metric", "train/return").split(","))
         return "study" not in given and "x" not in given and metrics <= METRICS
-    if name == "render" and given.get("mode") == "training":  # test_belief_frames.py
-        return False
     elsewhere = ("train", "benchmark", "stand_in", "robot")  # test_benchmark.py, test_robot_run.py
     elsewhere += ("view", "demo")  # test_view.py, test_demo.py
+    elsewhere += ("thesis.studies.belief_video",)  # test_belief_frames.py
     return name not in elsewhere and "..." not in given.values()
 
 
