@@ -121,8 +121,8 @@ def test_a_run_names_the_shortest_key_of_the_field():
         ("model.model.inputs=[3]", "model.inputs=[3]: must be some of the entries 0 to 2"),
         ("algo=kle3 equilibrium.free=[9]", "equilibrium.free=[9]: must be some of 0 to 1, not all"),
         ("task=two_link algo=kle3_bayesopt", "belief.size=1: must be 2, as of the domain"),
-        ("algo=sac learner@policy_learner=flash_sac", "EnsembleQ has no in_batch, which FlashSAC"),
-        ("task=quadcopter env.asset=x", "x: no such file; assets are "),
+        ("algo=sac learner@policy_learner=flash_sac", "needs policy=unit_gaussian"),
+        ("task=quadcopter env.asset=x", "/x: no such file"),
         ("algo=analytic model=sines", "model=Gaussian: AnalyticGradient learns with it, and no le"),
     ],
 )

@@ -36,8 +36,7 @@ def path(asset: str) -> Path:
     """The file of `asset`: a name in `assets`, or an absolute path."""
     file = FOLDER / asset
     if not file.is_file():
-        known = ", ".join(sorted(p.name for p in FOLDER.glob("*.xml")))
-        raise ValueError(f"{file}: no such file; assets are {known}")
+        raise ValueError(f"{file}: no such file")
     return file
 
 

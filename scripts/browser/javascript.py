@@ -144,8 +144,9 @@ class Program:
 
     def _physics(self, target: str, x: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
         """The state after MuJoCo's steps, and the fields of MjData that the call reads."""
-        asset, _, steps, reads, fields = target.removeprefix(native.NAME).rsplit(":", 4)
-        if not target.startswith(native.NAME) or fields:
+        called = target.partition(native.NAME)[2].rsplit(":", 4)
+        asset, _, steps, reads, fields = called if len(called) == 5 else ["", "", "", "", target]
+        if fields:
             raise ValueError(f"{target}: is no step of a model of MuJoCo that stays as it is")
         names = [name for name in reads.split(",") if name]
         if mjcf.load(asset).nsensordata:

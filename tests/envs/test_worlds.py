@@ -167,7 +167,7 @@ S, C = np.sin(0.3), np.cos(0.3)
 TURNED = Rotation.from_rotvec([0.2, -0.3, 0.1]).as_matrix()
 LONG, LEANING = {"length": 1.2}, [0.3, 0.5, 0, 0]
 FALLING, FLYING = [0.2, 0.3, -0.3, 0, 0, 0], [1, 2, 3, *TURNED.ravel(), *[0] * 6]
-SHOWN = [  # a state, and where a body or a geom is then in the scene: place [m], and its z axis
+SHOWN = [  # a state, and where a body or a geom is then in the scene: position [m], and its z axis
     ("cart_pendulum", LONG, LEANING, "rod", [0.5 + 0.6 * S, 0, 0.6 * C], [-S, 0, -C]),
     ("cart_swing_up", LONG, LEANING, "rod", [0.5 - 0.6 * S, 0, 0.6 * C], [S, 0, -C]),
     ("cart_double_pendulum", {}, FALLING, "upper", [0.2 + S / 2, 0, C / 2], [-S, 0, C]),
@@ -177,13 +177,13 @@ SHOWN = [  # a state, and where a body or a geom is then in the scene: place [m]
 ]
 
 
-@pytest.mark.parametrize(("task", "given", "x", "name", "place", "axis"), SHOWN)
-def test_a_scene_shows_the_state(task, given, x, name, place, axis):
+@pytest.mark.parametrize(("task", "given", "x", "name", "position", "axis"), SHOWN)
+def test_a_scene_shows_the_state(task, given, x, name, position, axis):
     env = make(task, **given)
     state = jitted(env, "reset")(jax.random.key(0)).replace(data=jnp.asarray(x, jnp.float32))
     data = shown(env, state)
     found = data.geom(name) if name in ("rod", "tip") else data.body(name)
-    for got, want in zip(found.xpos, place, strict=True):
+    for got, want in zip(found.xpos, position, strict=True):
         assert want is None or got == pytest.approx(want, abs=1e-6)
     if axis is not None:
         np.testing.assert_allclose(found.xmat.reshape(3, 3)[:, 2], axis, atol=1e-6)
