@@ -103,7 +103,7 @@ class Exploring:
         """What was sent, [K, m] with the newest last, and how late it acts [decisions]."""
         control = self._acting.control
         if isinstance(control, AheadState):
-            known = {"sent": sent.astype(np.float32)[None, None], "lag": np.full((1, 1), lag, np.float32)}
+            known = {"sent": np.float32(sent)[None, None], "lag": np.full((1, 1), lag, np.float32)}
             self._acting.control = control._replace(**known)
 
     def __call__(self, obs: np.ndarray, decisions: int) -> np.ndarray:
