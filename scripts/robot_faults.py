@@ -7,7 +7,7 @@ killed or stopped at random and files are damaged. At the end it is checked that
 
 * the robot took decisions again after each fault (no hang), and each action was within its bounds;
 * the rows are numbered without a gap, and sound;
-* the replay memory of the last checkpoint holds them as they are in the file.
+* the replay memory of the last checkpoint holds them as they are in the file, by what acted.
 """
 
 import json
@@ -25,7 +25,10 @@ from typing import Any
 import numpy as np
 
 from hybrid_rl.cli.arguments import Argument, number, read, whole
+from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.adapters.stand_in import Cartpole
+from hybrid_rl.outside.lag import known_lag
+from hybrid_rl.outside.learner import transition
 from hybrid_rl.outside.row_log import RowLog
 from hybrid_rl.thesis.studies.recorded import read as recorded
 from hybrid_rl.types import Spec
@@ -137,13 +140,14 @@ class Trial:
             sound += 1
         rows = [log.read(i) for i in range(sound)]
         bounded = all(np.abs(row["action"]).max() <= 1 for row in rows if row is not None)
-        memory = recorded(self.folder)
+        memory, lag = recorded(self.folder), known_lag(ENV, self.folder / "robot")
         made, same = memory.made, 0
         for i in range(memory.decisions):
             row = rows[i]
             assert row is not None
-            pairs = (made.obs, row["obs"]), (made.action, row["action"])
-            same += all(np.array_equal(ours[0, i], theirs) for ours, theirs in pairs)
+            kept = transition(row, lag)
+            pairs = (made.obs, kept.obs), (made.action, kept.action)
+            same += all(np.array_equal(ours[0, i], theirs[0, 0]) for ours, theirs in pairs)
         return {
             "exit": code,
             "rows": sound,
@@ -156,6 +160,7 @@ class Trial:
 
 
 SPEC = Spec(Cartpole.obs, len(Cartpole.low), Cartpole.dt)
+ENV = Robot(make="hybrid_rl.envs.adapters.stand_in:Cartpole")
 
 
 def main() -> None:

@@ -103,11 +103,8 @@ class Exploring:
         """What was sent, [K, m] with the newest last, and how late it acts [decisions]."""
         control = self._acting.control
         if isinstance(control, AheadState):
-            known = {
-                "sent": sent.astype(np.float32)[None, None],
-                "lag": np.full((1, 1), lag, np.float32),
-            }
-            self._acting.control = control._replace(**known)
+            each, late = np.array(sent, np.float32), np.full((1, 1), lag, np.float32)
+            self._acting.control = control._replace(sent=each[None, None], lag=late)
 
     def __call__(self, obs: np.ndarray, decisions: int) -> np.ndarray:
         """The action [m] at `obs` [o], after so many decisions of the run."""

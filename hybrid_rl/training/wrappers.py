@@ -212,25 +212,24 @@ class Late(Around):
         """Steps of the physics in a decision; 0: actions arrive between decisions, or no MuJoCo."""
         if float(self.delay).is_integer() and not self.jitter:
             return 0
-        kept = [each for each in _leaves(state.data) if isinstance(each, PhysicsState)]
-        if not kept:
-            return 0
-        steps = round(self.spec.dt / mjcf.load(kept[0].asset).opt.timestep)
+        kept = filter(_simulated, jax.tree.leaves(state.data, is_leaf=_simulated))
+        times = [mjcf.load(each.asset).opt.timestep for each in kept]
+        steps = round(self.spec.dt / times[0]) if times else 0
         return steps if steps > 1 else 0
 
 
-def _leaves(data: PyTree) -> list[Any]:
-    return jax.tree.leaves(data, is_leaf=lambda leaf: isinstance(leaf, PhysicsState))
+def _simulated(leaf: Any) -> bool:
+    return isinstance(leaf, PhysicsState)
 
 
 def _held(data: PyTree, steps: Array | int) -> PyTree:
     """`data` whose physics keep the controls of before for so many [] steps."""
 
     def one(leaf: Any) -> Any:
-        known = isinstance(leaf, PhysicsState)
-        return leaf.replace(held=jnp.asarray(steps, jnp.int32)) if known else leaf
+        held = jnp.asarray(steps, jnp.int32)
+        return leaf.replace(held=held) if _simulated(leaf) else leaf
 
-    return jax.tree.map(one, data, is_leaf=lambda leaf: isinstance(leaf, PhysicsState))
+    return jax.tree.map(one, data, is_leaf=_simulated)
 
 
 @dataclass(frozen=True)

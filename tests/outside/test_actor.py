@@ -56,7 +56,7 @@ def test_rows_are_decisions_in_order(agent, tmp_path):
 def test_a_row_holds_what_was_sent_and_when(agent, tmp_path):
     """The decisions before it, as far as they follow each other; at first the safe action."""
     _, rows = moved(agent, tmp_path, Counting)
-    assert rows[0]["sent"][1:, 0].tolist() == [-0.5] * 4
+    assert {float(u) for row in rows for u in row["sent"][row["times"] < -9, 0]} == {-0.5}
     pairs = [(a, b) for a, b in pairwise(rows) if a["stretch"] == b["stretch"]]
     assert len(pairs) > 5
     for row, after in pairs:
