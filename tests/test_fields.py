@@ -122,7 +122,6 @@ def test_a_run_names_the_shortest_key_of_the_field():
         ("algo=kle3 equilibrium.free=[9]", "equilibrium.free=[9]: must be some of 0 to 1, not all"),
         ("task=two_link algo=kle3_bayesopt", "belief.size=1: must be 2, as of the domain"),
         ("algo=sac learner@policy_learner=flash_sac", "needs policy=unit_gaussian"),
-        ("task=quadcopter env.asset=x", "/x: no such file"),
         ("algo=analytic model=sines", "model=Gaussian: AnalyticGradient learns with it, and no le"),
     ],
 )
