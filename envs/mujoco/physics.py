@@ -129,6 +129,8 @@ class Physics:
             return self._advance(state.replace(ctrl=new), n)
 
         def one(_: int, state: PhysicsState) -> PhysicsState:
+            assert state.held is not None
+            assert state.ctrl is not None
             u, left = jnp.where(state.held > 0, state.ctrl, new), jnp.maximum(state.held - 1, 0)
             return self._advance(state.replace(ctrl=u, held=left), 1)
 

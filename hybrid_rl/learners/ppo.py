@@ -12,7 +12,7 @@ limit is bootstrapped through. Rewards are divided by `params.scale` where it is
 RSL-RL (Rudin et al. 2022). Defaults: those of Brax for locomotion, where they agree.
 """
 
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -42,6 +42,16 @@ class PPOState:
     rate: Array  # []
     decisions: Batch  # [T, E, ...]
     found: dict[str, Array]  # metrics of the last update; 0 before the first
+
+
+class Rows(NamedTuple):
+    """Decisions [B] as the policy learns from them."""
+
+    x: Array  # [B, n]
+    u: Array  # [B, m]
+    log_prob: Array  # [B] under the policy that made them
+    gain: Array  # [B] advantage
+    goal: Array  # [B] of the value
 
 
 @part
@@ -106,6 +116,7 @@ class PPO:
 
         Metrics are those of the last update. The key is consumed.
         """
+        assert params.decisions is not None
         slot = (params.decisions // self.num_envs) % self.unroll
         kept = jax.tree.map(lambda all_, new: all_.at[slot].set(new), state.decisions, batch)
         state = state.replace(decisions=kept)
@@ -144,36 +155,34 @@ class PPO:
         seen = statistics.update(state.seen, x)
         state = state.replace(seen=seen, policy=self.policy.observe(state.policy, x))
         advantage, values = self.advantages(state, 1.0 if scale is None else scale)
-        whole = (made.obs, u, old, advantage, advantage + values)
-        flat = jax.tree.map(lambda leaf: leaf.reshape(-1, *leaf.shape[2:]), whole)
+        whole = Rows(made.obs, u, old, advantage, advantage + values)
+        flat: Rows = jax.tree.map(lambda leaf: leaf.reshape(-1, *leaf.shape[2:]), whole)
 
-        def one(state: PPOState, given: tuple) -> tuple[PPOState, dict[str, Array]]:
-            rows, key = given
-            return self._step(state, *jax.tree.map(lambda leaf: leaf[rows], flat), key)
+        def one(state: PPOState, given: tuple[Array, Array]) -> tuple[PPOState, dict[str, Array]]:
+            at, key = given
+            return self._step(state, jax.tree.map(lambda leaf: leaf[at], flat), key)
 
         def epoch(state: PPOState, key: Array) -> tuple[PPOState, dict[str, Array]]:
             mixing, drawing = jax.random.split(key)
             order = jax.random.permutation(mixing, len(x)).reshape(self.minibatches, -1)
             return jax.lax.scan(one, state, (order, jax.random.split(drawing, self.minibatches)))
 
-        state, rows = jax.lax.scan(epoch, state, jax.random.split(key, self.epochs))
-        return state.replace(found={name: row.mean() for name, row in rows.items()})
+        state, found = jax.lax.scan(epoch, state, jax.random.split(key, self.epochs))
+        return state.replace(found=jax.tree.map(jnp.mean, found))
 
-    def _step(
-        self, state: PPOState, x: Array, u: Array, old: Array, gain: Array, goal: Array, key: Array
-    ) -> tuple[PPOState, dict[str, Array]]:
-        """`state` after a step on decisions [B]; old: their log-densities; goal: their values."""
-        gain = (gain - gain.mean()) / (gain.std() + 1e-8)
-        noise = jax.random.normal(key, u.shape)
+    def _step(self, state: PPOState, rows: Rows, key: Array) -> tuple[PPOState, dict[str, Array]]:
+        """`state` after a step on decisions [B], and its metrics. The key is consumed."""
+        gain = (rows.gain - rows.gain.mean()) / (rows.gain.std() + 1e-8)
+        noise = jax.random.normal(key, rows.u.shape)
 
         def loss(both: tuple[Any, Any]) -> tuple[Array, tuple[Array, ...]]:
             policy, value = both
-            log_ratio = self.policy.log_prob(policy, x, u) - old
+            log_ratio = self.policy.log_prob(policy, rows.x, rows.u) - rows.log_prob
             ratio = jnp.exp(log_ratio)
             near = jnp.clip(ratio, 1 - self.clip, 1 + self.clip)
             of_policy = -jnp.minimum(ratio * gain, near * gain).mean()
-            entropy = -self.policy.sample(policy, x, noise)[1].mean()
-            of_value = 0.5 * ((self._value(state, value, x) - goal) ** 2).mean()
+            entropy = -self.policy.sample(policy, rows.x, noise)[1].mean()
+            of_value = 0.5 * ((self._value(state, value, rows.x) - rows.goal) ** 2).mean()
             kl = (ratio - 1 - log_ratio).mean()
             found = (of_policy, of_value, entropy, kl)
             return of_policy + 0.5 * of_value - self.entropy * entropy, found
@@ -181,7 +190,8 @@ class PPO:
         both = state.policy, state.value
         (_, found), grads = jax.value_and_grad(loss, has_aux=True)(both)
         change, optimiser = self._optimiser.update(grads, state.optimiser)
-        policy, value = optax.apply_updates(both, jax.tree.map(lambda g: -state.rate * g, change))
+        down = jax.tree.map(lambda g: -state.rate * g, change)
+        policy, value = (optax.apply_updates(*pair) for pair in zip(both, down, strict=True))
         rate = state.rate
         if self.target_kl is not None:
             far, close = found[-1] > 2 * self.target_kl, found[-1] < self.target_kl / 2
