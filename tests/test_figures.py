@@ -76,7 +76,7 @@ def test_the_studies_are_listed_without_their_libraries(toy, capsys, arguments):
     lines = capsys.readouterr().out.splitlines()[1:]
     names = ["active_learning", "bayesian_optimisation", "contact_maps", "ergodic_coverage"]
     names += ["held_out", "imitation", "koopman", "koopman_settings"]
-    names += ["learning_curves", "model_learning", "robots", "tuning"]
+    names += ["learning_curves", "model_learning", "robots"]
     assert [line.split()[0] for line in lines] == names
     assert all(line.endswith(".") for line in lines)
 

@@ -41,7 +41,7 @@ ALLOWED = {
     "protocols": {"types", "errors", "fields", "protocols"},
     "core": {"types", "fields", "protocols", "core"},
     "networks": {"types", "fields", "protocols", "core", "networks"},
-    "envs": {"types", "fields", "protocols", "errors", "files", "envs"},
+    "envs": {"types", "fields", "protocols", "core", "errors", "files", "envs"},
     "training": {"errors", *SHARED, "files", "envs", "data", "training"},
     "archive": {"types", "files", "protocols"},
     "data": {*SHARED, "files", "archive"},

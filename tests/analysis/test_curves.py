@@ -1,12 +1,10 @@
 """Learning curves: what is averaged over which seeds, at which steps."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from hybrid_rl.analysis import tables
 from hybrid_rl.analysis.curves import area, band, curves, improvement, iqm, steps_to
 from hybrid_rl.analysis.learning_curves import FEW, comparisons, figure, summary
 from hybrid_rl.analysis.results import find
@@ -218,19 +216,6 @@ def test_runs_are_found_by_glob_by_folder_and_by_list(tmp_path):
         assert find(several) == [folders[2], *folders[:2]]
     with pytest.raises(UsageError, match=r"runs=none/\*: no run there"):
         find(f"{tmp_path}/b,none/*")
-
-
-def test_the_page_makes_a_table_of_what_stable_baselines_saves(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    for seed in (3, 4):
-        (tmp_path / "logs" / str(seed)).mkdir(parents=True)
-        saved = {"timesteps": [100, 200], "results": [[1.0, 2.0], [seed, seed]]}
-        np.savez(tmp_path / f"logs/{seed}/evaluations.npz", **saved)
-    page = (Path(__file__).parents[2] / "docs" / "faq.md").read_text(encoding="utf-8")
-    exec(page.split("EvalCallback")[1].split("```python\n")[1].split("```")[0], {})
-    (got,) = tables.read("sb3.csv", "eval/return", ["halfcheetah"])
-    assert (got.label, sorted(got.seeds)) == ("SAC of SB3 (sb3.csv)", [3, 4])
-    np.testing.assert_allclose(sorted(got.each.tolist()), [[1.5, 3], [1.5, 4]])
 
 
 def test_the_band_of_few_seeds_is_their_range():

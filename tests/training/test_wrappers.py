@@ -26,10 +26,9 @@ def test_what_is_paid_is_one_number(name, method):
         (lambda x, u, after: after[0] - u**2, "float32[1]"),
         (lambda x, u, after: None, "None"),
         (lambda x, u, after: 1.0 if x[0] > 0 else 0.0, "jnp.where"),
-        (lambda x, u, after: x[3], "index 3 is out of bounds"),
         (lambda x, u, after: (x[:, None] - after).sum(), "(3, 1) (3,)"),
         (lambda x, u, after: sys.exit(), "SystemExit"),
-        (lambda x, u: x[0], "(self, x, u, after)"),
+        (lambda x, u: x[0], "positional arguments"),
     ):
         with pytest.raises(ValueError, match=re.escape(words)) as error:
             Episode(Pendulum(), **{name: Mine(**{method: function})})
