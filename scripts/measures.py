@@ -4,7 +4,8 @@
     python -m scripts.measures --lower  also lowers every budget to what stands
 
 The budgets are in tests/budgets.json; tests/test_budget.py fails where a measure is above its
-budget. A budget is only ever lowered: a line that is added is paid for by one that goes.
+budget. A budget is only ever lowered: a line that is added is paid for by one that goes. It may go
+in another room: `--lower` moves a room's budget to what stands, as long as the sum is kept.
 """
 
 import ast
@@ -16,6 +17,7 @@ from pathlib import Path
 
 TOP = Path(__file__).parents[1]
 BUDGETS = TOP / "tests" / "budgets.json"
+SUMS = ("lines of hybrid_rl without tools, and envs", "lines of tests")
 TOOLS = "hybrid_rl/tools/"  # stands on the public API, as a project of a user's would
 HOMES = {"hybrid_rl.envs": "envs", "hybrid_rl.thesis": "thesis"}  # in a checkout
 
@@ -175,7 +177,8 @@ def main() -> None:
     print(f"{'raise a thousand lines':46} {rate:9.1f}")
     if "--lower" in sys.argv:
         kept = {name: min(value, budgets.get(name, value)) for name, value in stands.items()}
-        BUDGETS.write_text(json.dumps(kept, indent=2) + "\n")
+        rooms = {name for name in stands if name.startswith("lines of ") and name not in SUMS}
+        BUDGETS.write_text(json.dumps(kept | {n: stands[n] for n in rooms}, indent=2) + "\n")
 
 
 if __name__ == "__main__":

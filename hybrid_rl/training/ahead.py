@@ -87,8 +87,10 @@ def _between(a: Array, b: Array, share: Array) -> Array:
 def ahead(controller: Controller, lag: float, most: int = 0) -> Controller:
     """`controller`, at predicted states if it has a model and there is a `lag` [decisions].
 
-    most: [decisions] longest lag, if it may change.
+    most: [decisions] longest lag, if it may change. One that has another lag gets this one.
     """
+    if isinstance(controller, AheadController):
+        controller = controller.controller
     models = (inner for _, name, _, inner in parts(controller) if name == "model")
     model, most = next(models, None), max(most, math.ceil(lag))
     return (

@@ -79,4 +79,6 @@ def test_it_is_around_controllers_with_a_model_where_there_is_a_lag():
     assert ahead(with_model, 0.0) is with_model
     assert ahead(without, 1.0) is without
     assert ahead(with_model, 1.4).most == 2
+    assert ahead(ahead(with_model, 1.4), 0.0) is with_model
+    assert ahead(ahead(with_model, 1.4), 3.0) == ahead(with_model, 3.0)
     assert ahead(with_model, 0.0, most=4).lag == 0
