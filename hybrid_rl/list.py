@@ -22,8 +22,8 @@ from hybrid_rl.settings.groups import CONF, THESIS, search_path
 MARKS = ("# Has ", "# Needs ")  # of a task, and of a method that not every task fits
 GROUPS = {"task": "Tasks", "algo": "Methods", "experiment": "Experiments"}
 FIRST = (  # of the methods; parts of others and baselines follow
-    *("hybrid_stochastic", "hybrid_deterministic", "sac", "flash_sac", "nn_mppi", "hybrid_bc"),
-    *("kle3", "koopman_active"),
+    *("hybrid_stochastic", "hybrid_deterministic", "sac", "flash_sac", "ppo", "nn_mppi"),
+    *("hybrid_bc", "kle3", "koopman_active"),
 )
 ARGUMENTS = (CONFIG_DIR,)
 
@@ -77,7 +77,7 @@ def main() -> None:
         ]
         rows = {name: line for lines in ours for name, line in lines.items()}
         first = [rows.pop(name) for name in FIRST if name in rows] if group == "algo" else []
-        print(f"{title}  ({group}=NAME{'; start with these eight' if first else ''})")
+        print(f"{title}  ({group}=NAME{'; start with these nine' if first else ''})")
         if first:
             print(*first, "", sep="\n")
         print(*rows.values(), "", sep="\n")

@@ -11,13 +11,13 @@ if __name__ == "__main__":
 
     interrupt.install()
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from hybrid_rl.analysis.drawing import draw
+from hybrid_rl.analysis.drawing import frames, write
 from hybrid_rl.analysis.style import STYLE, legend_below
 from hybrid_rl.cli import arguments, command
 from hybrid_rl.cli.arguments import Argument, whole
@@ -119,11 +119,17 @@ def main() -> None:
     given, _ = arguments.read(__doc__, ARGUMENTS)
     out, size = arguments.output("out", given["out"], [*MOST]), (given["width"], given["height"])
     offscreen.backend()  # raises before minutes of work
-    offscreen.check_size(*size)
     folder, seed, steps = Path(given["run"]), given["seed"], given["episode_steps"]
     shown = film(folder, seed, steps, size[1], MOST[out.suffix])
     check_drawable(shown.world)
-    draw(scene_of(shown.world), shown.poses, out, shown.fps, *size, shown.panel)
+    scene = scene_of(shown.world)
+
+    def pictures(which: Sequence[int], smooth: bool) -> Iterator[np.ndarray]:
+        """The scene, and the panel to the right of it."""
+        drawn = frames(scene, shown.poses[list(which)], *size, smooth)
+        return (np.hstack([one, shown.panel(i)]) for i, one in zip(which, drawn, strict=True))
+
+    write(out, len(shown.poses), shown.fps, pictures)
     speed = "" if out.suffix == ".png" else f", {shown.speed:.2g} times real time"
     print(f"{out}: {shown.decisions} decisions, return {shown.total:,.1f}, of training{speed}")
     if shown.apart > FAR:
