@@ -52,7 +52,7 @@ ALLOWED = {
     "run": {*CONFIG, "core", "archive", "data", "controllers", "outside", "run"},  # on the host
     "cli": {*CONFIG, "run", "cli"},  # what the commands share
     "analysis": {*SHARED, *CONFIG, "data", "outside", "run", "cli", "analysis"},
-    # as a user's project would, and nothing but the command `render` imports it
+    # as a user's project would; nothing imports it
     "thesis": {*SHARED, *CONFIG, "data", "beliefs", "run", "outside", "cli", "analysis", "thesis"},
 }
 HYDRA = {"command", "settings", "run", "cli", "tools", "analysis", "thesis"}
