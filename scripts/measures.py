@@ -14,7 +14,9 @@ import sys
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
+from typing import TypeVar
 
+Node = TypeVar("Node", bound=ast.AST)
 TOP = Path(__file__).parents[1]
 BUDGETS = TOP / "tests" / "budgets.json"
 SUMS = ("lines of hybrid_rl without tools, and envs", "lines of tests")
@@ -46,10 +48,10 @@ def tree_of(text: str) -> ast.Module:
     return ast.parse(text)
 
 
-def nodes(files: dict[str, str], *kinds: type) -> Iterator[ast.AST]:
-    """Every node of these kinds in the syntax trees of these files."""
+def nodes(files: dict[str, str], kind: type[Node]) -> Iterator[Node]:
+    """Every node of this kind in the syntax trees of these files."""
     for text in files.values():
-        yield from (node for node in ast.walk(tree_of(text)) if isinstance(node, kinds))
+        yield from (node for node in ast.walk(tree_of(text)) if isinstance(node, kind))
 
 
 def named(node: ast.AST) -> str:
@@ -141,10 +143,10 @@ def measures() -> dict[str, float]:
         rooms.setdefault(room(path), set()).update(map(room, others))
     rooms = {name: others - {name} for name, others in rooms.items()}
     trained = closure("hybrid_rl/train.py", graph)
-    raised = sum(node.exc is not None for node in nodes(files, ast.Raise))  # type: ignore[attr-defined]
-    bases = [b for kind in nodes(files, ast.ClassDef) for b in kind.bases]  # type: ignore[attr-defined]
-    calls = [node.func for node in nodes(files, ast.Call)]  # type: ignore[attr-defined]
-    loose = [n for n in nodes(files, ast.AnnAssign) if n.value and named(n.annotation) == "Any"]  # type: ignore[attr-defined]
+    raised = sum(node.exc is not None for node in nodes(files, ast.Raise))
+    bases = [b for kind in nodes(files, ast.ClassDef) for b in kind.bases]
+    calls = [node.func for node in nodes(files, ast.Call)]
+    loose = [n for n in nodes(files, ast.AnnAssign) if n.value and named(n.annotation) == "Any"]
     found = {
         "lines of hybrid_rl without tools, and envs": lines(files),
         "lines of tests": lines(sources("tests", "thesis/tests")),

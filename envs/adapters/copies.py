@@ -127,7 +127,7 @@ class Copies:
 
     def _kill(self) -> None:
         """End all processes, also those that are stopped or do not answer."""
-        if (vector := vars(self).pop("_vector", None)) is None:  # a process did not begin
+        if (vector := vars(self).pop("_vector", None)) is None:  # a process failed to start
             return
         for process in vector.processes:
             process.kill()

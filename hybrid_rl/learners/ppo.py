@@ -9,7 +9,8 @@ Every `unroll` decisions of each world the policy learns from these alone: `epoc
 `minibatches` parts. Until then it does not change, so pi_old follows from its parameters. A time
 limit is bootstrapped through. Rewards are divided by `params.scale` where it is learned
 (learners.return_scale). With `target_kl` the learning rate follows the change of the policy, as in
-RSL-RL (Rudin et al. 2022). Defaults: those of Brax for locomotion, where they agree.
+RSL-RL (Rudin et al. 2022). The defaults lie among those that Brax and MuJoCo Playground give their
+locomotion tasks.
 """
 
 from typing import Any, ClassVar, NamedTuple
@@ -20,7 +21,7 @@ import optax
 from flax import struct
 from jax import Array
 
-from hybrid_rl.core import statistics
+from hybrid_rl.core import returns, statistics
 from hybrid_rl.fields import Count, Discount, Fraction, Inside, NotNegative, Positive, part
 from hybrid_rl.networks import MLP, Activation, Widths, apply
 from hybrid_rl.protocols import LearnedPolicy
@@ -138,13 +139,8 @@ class PPO:
         going = 1 - made.terminated
         delta = made.reward / scale + self.discount * going * after - values
         follows = self.discount * self.trace * going * (1 - made.truncated)
-
-        def back(later: Array, now: tuple[Array, Array]) -> tuple[Array, Array]:
-            found = now[0] + now[1] * later
-            return found, found
-
-        first = jnp.zeros(self.num_envs)
-        return jax.lax.scan(back, first, (delta, follows), reverse=True)[1], values
+        sums = jax.vmap(returns.to_go, (1, 1, 0), 1)(delta, follows, jnp.zeros(self.num_envs))
+        return sums[:-1], values
 
     def _learned(self, state: PPOState, scale: Any, key: Array) -> PPOState:
         """`state` after the passes over its decisions."""
