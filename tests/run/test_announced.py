@@ -57,7 +57,6 @@ def test_a_run_ends_with_its_curve(tmp_path, capfd):
     assert call_train(*TINY, "algo=sac", "eval_every=200", f"run_dir={folder}") == 0
     printed = capfd.readouterr().out
     assert printed.index("compiling on") < printed.index(f"Evaluation return ({folder}/curve.png)")
-    assert "600 decisions\n" in printed
     assert (folder / "curve.png").stat().st_size > 1000
     (line,) = json.loads((folder / "curve.json").read_text())["curves"]
     evaluated = {r["step"]: r["eval/return"] for r in rows_of(folder) if "eval/return" in r}
