@@ -1,4 +1,4 @@
-"""The numbers in which networks compute; whatever is no network computes in float32.
+"""Floating-point precision of networks; everything else computes in float32.
 
     float32  as everything else
     tf32     products in TF32 on a GPU: factors rounded to 10 bits, sums in float32

@@ -1,4 +1,4 @@
-"""Who acts in which world, and what of it can be changed while it runs.
+"""The controllers of a window, their world, and its numbers that a slider may change.
 
 A number of a reward or of a constraint is an argument of the compiled programs: a slider moves it
 without a compilation. Everything else makes other programs.
