@@ -45,12 +45,14 @@ def make(task: str, overrides: Sequence[str] = (), config_dir: str | Path | None
     return config.episodes(config.load([f"task={task}", "algo=sac", *overrides], config_dir))
 
 
-def load(run: str | Path) -> "Trained":
+def load(run: str | Path, key: str = "") -> "Trained":
     """A run folder, a policy that comes with the package, or a policy's file NAME.npz, read back.
 
         policy = load("halfcheetah").policy()
         policy.reset()  # at the start of every episode
         action = policy(obs)  # [o] -> [m] in [-1, 1]; [N, o] -> [N, m]
+
+    key: the argument of a command that named it, run or policy.
 
     Raises:
         UsageError: if there is no such thing, or it is damaged.
@@ -59,10 +61,10 @@ def load(run: str | Path) -> "Trained":
     from hybrid_rl.run import saved as trained
 
     name = str(run)
-    if not Path(run).is_dir() and (name.endswith(".npz") or name in trained.names()):
-        return trained.read(name)
-    if Path(run).is_dir():
+    if key == "run" or (not key and Path(run).is_dir()):
         return trained.load(run)
+    if key or name.endswith(".npz") or name in trained.names():
+        return trained.read(name)
     known = ", ".join(trained.names())
     raise UsageError(f"load({name!r}): no run folder, and no policy; choose a file, or {known}")
 

@@ -102,7 +102,7 @@ def made(name: str, seed: int, kinds: list[str]) -> Iterator[Evidence]:
         each = (obs[:, :-1], action, reward[:, 1:], 1.0 * ended[:, 1:], 1.0 * over, obs[:, 1:])
         rows = Transition(*(a[lives][:number][None] for a in each))
         folder, run = SimpleNamespace(rows=[], summary={}), SimpleNamespace(agent=agent)
-        evidence = Evidence(folder, None, run, rows)  # pyright: ignore
+        evidence = Evidence(folder, run, rows)  # pyright: ignore
         vars(evidence)["at_rest"] = None
         yield evidence
 

@@ -1,4 +1,4 @@
-"""The numbers in which networks compute; whatever is no network computes in float32.
+"""Floating-point precision of networks; everything else computes in float32.
 
     float32  as everything else
     tf32     products in TF32 on a GPU: factors rounded to 10 bits, sums in float32
@@ -20,6 +20,7 @@ from jax.lax import Precision
 OF_DEVICE = {"auto": {"gpu": "tf32"}, "mixed": {"gpu": "bf16"}}  # by kind of device, else float32
 PRECISIONS = ("auto", "mixed", "bf16", "tf32", "float32")
 using = jax.make_user_context("auto")  # a part of JAX's keys of traced programs
+using.__doc__ = "`with using(NAME)`: networks traced in the block compute in one of PRECISIONS."
 
 
 def choose(name: str) -> None:

@@ -1,4 +1,4 @@
-"""What decides: objectives, targets, proposals and controllers."""
+"""Protocols of objectives, targets, proposals and controllers, which decide."""
 
 from typing import Protocol
 

@@ -1,4 +1,4 @@
-"""Environments."""
+"""Protocols of environments, and of the abilities that some methods need of one."""
 
 from typing import Annotated, Protocol
 

@@ -1,4 +1,4 @@
-"""What is learned: models, policies, critics, rewards and beliefs."""
+"""Protocols of models, policies, critics, rewards and beliefs, which have parameters."""
 
 from typing import Protocol
 

@@ -1,4 +1,4 @@
-"""What learns: demonstrations and learners."""
+"""Protocols of learners, which make parameters from data, and of demonstrations."""
 
 from typing import Literal, Protocol
 

@@ -1,4 +1,4 @@
-"""r = b + d v - c |u|^2 - p [|pitch| > level]: run forward, in a way that is asked for.
+"""r = b + d v - c |u|^2 - p [|pitch| > level]: run forward or back, level or thriftily.
 
 v is the speed [m/s] of the robot, d its direction. Planners see a sigmoid instead of the
 indicator, as some take gradients. b is that of core.alive.

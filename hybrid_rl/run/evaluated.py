@@ -20,13 +20,13 @@ def evaluate(
     trained: Trained,
     mode: str = "full",
     episodes: int = 10,
-    on_decisions: Callable[[int], None] = lambda made: None,
+    on_decisions: Callable[[int], bool | None] = lambda made: None,
 ) -> dict[str, np.ndarray]:
     """Undiscounted `return` [S, episodes] of the same episodes as in training.
 
     If the task measures it, also `success` [S, episodes], 0 or 1; with a constraint also
     `violations` [S, episodes], in decisions. on_decisions: is called now and then with the number
-    of decisions that every episode has made.
+    of decisions that every episode has made; once it returns True, there is no result, {}.
 
     Raises:
         UsageError: for a mode that the method does not have.

@@ -22,8 +22,8 @@ from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
 
-from hybrid_rl import UsageError, __version__, arguments, command
-from hybrid_rl.errors import install
+from hybrid_rl import UsageError, __version__, arguments, command, load, names
+from hybrid_rl import film as write_film
 from hybrid_rl.tools.view import __main__ as view
 
 ARGUMENTS = (
@@ -51,17 +51,14 @@ def installed() -> str:
     """Lines about this machine and this installation."""
     import jax
 
-    from hybrid_rl.run.saved import names
-    from hybrid_rl.settings.groups import options
-
     device = jax.devices()[0]
     extras = [name for name, module in EXTRAS.items() if find_spec(module)]
     return "\n".join(
         (
             f"hybrid_rl {__version__}, Python {platform.python_version()}, "
             f"JAX {version('jax')} on {device.device_kind}, MuJoCo {version('mujoco')}",
-            f"{len(options('task'))} tasks, {len(options('algo'))} methods; "
-            f"trained policies: {', '.join(names())}",
+            f"{len(names('task'))} tasks, {len(names('algo'))} methods; "
+            f"trained policies: {', '.join(names('policies'))}",
             f"extras: {', '.join(extras) or 'none'}",
         )
     )
@@ -77,20 +74,12 @@ def windowed(asked: str) -> bool:
 
 def film(policy: str, out: Path) -> str:
     """Write a video of a trained policy; a line about it, or why there is none."""
-    from hybrid_rl.analysis.drawing import SUFFIXES
-    from hybrid_rl.analysis.film import draw_film, episode
-    from hybrid_rl.envs.mujoco import offscreen
-    from hybrid_rl.run.saved import read as read_policy
-
-    arguments.output("out", out, SUFFIXES)
-    trained = read_policy(policy)
-    shown = episode(trained, steps=min(SHOWN, trained.episode.steps))
-    line = f"{trained.task}: {len(shown.poses) - 1} decisions, return {shown.total:,.1f}"
+    trained = load(policy, "policy")
     try:
-        offscreen.backend()
-    except offscreen.NoGraphicsError as error:
-        return f"{line}; no video: {error}"
-    draw_film(trained.episode, shown, out)
+        shown = write_film(trained, out, steps=min(SHOWN, trained.episode.steps))
+    except OSError as error:  # without graphics, say
+        return f"no video: {error}"
+    line = f"{trained.task}: {len(shown.poses) - 1} decisions, return {shown.total:,.1f}"
     return f"{line}; see {out.absolute()}"
 
 
@@ -101,7 +90,7 @@ def main() -> None:
     out = Path(given["out"] or f"{Path(policy).stem}.mp4")
     window = windowed(given["window"])
     print(installed(), flush=True)
-    hint = "" if find_spec("mjviser") else f"; {install('view')}"
+    hint = "" if find_spec("mjviser") else f"; {view.INSTALL}"
     if not window:
         print(f"drawing {policy}, half a minute without a graphics card", flush=True)
         print(film(policy, out))

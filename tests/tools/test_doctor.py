@@ -52,7 +52,7 @@ def evidence(seen, action, reward=None, terminated=False, rest=None):
     made = Transition(*(a.reshape(1, -1, *a.shape[2:]) for a in each))
     agent = SimpleNamespace(spec=Spec(seen.shape[-1], 1, DT))
     folder, run = SimpleNamespace(rows=[], summary={}), SimpleNamespace(agent=agent)
-    given = Evidence(folder, None, run, made)
+    given = Evidence(folder, run, made)
     vars(given)["at_rest"] = rest
     return given
 
@@ -286,7 +286,7 @@ def test_learners_that_diverged_come_first(folder):
 def test_damaged_numbers_are_one_line(folder, monkeypatch, capsys):
     given = read(folder)
     made = given.made._replace(obs=np.full_like(given.made.obs, np.nan))
-    monkeypatch.setattr(evidence_of, "_made", lambda *_: made)
+    monkeypatch.setattr(evidence_of, "decisions", lambda *_: made)
     damaged = read(folder)
     assert damaged.made is None
     assert learned.diverged(damaged).startswith("the replay memory of the newest checkpoint has")

@@ -9,6 +9,7 @@ from html.parser import HTMLParser
 import pytest
 from tiny import call, only_line
 
+import hybrid_rl as hr
 from hybrid_rl.cli import command
 from hybrid_rl.tools.report import __main__ as report
 
@@ -104,7 +105,7 @@ def test_a_page_about_two_runs_holds_everything(runs, tmp_path, capsys):
 
 def test_a_page_needs_no_other_file_and_its_names_are_unique(runs):
     """It opens offline, and the colours of its curves are those of its style."""
-    page = Page(report.page(report._folders(f"{runs[0]},{runs[1]}")))
+    page = Page(report.page(hr.runs(f"{runs[0]},{runs[1]}")))
     loaded = ("src", "href", "xlink:href", "srcset", "poster", "data", "action")
     outside = [value for _, name, value in page.attributes if name in loaded]
     assert all(value.startswith(("#", "data:")) for value in outside)
@@ -118,7 +119,7 @@ def test_a_page_needs_no_other_file_and_its_names_are_unique(runs):
 
 
 def test_seeds_make_a_band_and_the_numbers_are_those_of_the_rows(runs):
-    text = report.page(report._folders(str(runs[0])))
+    text = report.page(hr.runs(str(runs[0])))
     assert Page(text).of("h1") == ["sac on hopper"]
     cells = Page(text).of("td")
     at = cells.index("eval/return")
@@ -134,8 +135,8 @@ def test_seeds_make_a_band_and_the_numbers_are_those_of_the_rows(runs):
 
 def test_what_is_missing_or_damaged_is_one_line(runs, tmp_path, capfd):
     first, second = runs
-    assert f"evaluate run={second}" in report.page(report._folders(str(second)), video=False)
-    assert "None: " in report.page(report._folders(str(second)))  # nothing to draw
+    assert f"evaluate run={second}" in report.page(hr.runs(str(second)), video=False)
+    assert "None: " in report.page(hr.runs(str(second)))  # nothing to draw
     (first / "evaluation_full.json").write_text('{"seeds": [0]}')
     for given, line in (
         (f"run={tmp_path / 'none'}", "run=" + str(tmp_path / "none") + ": no run there"),

@@ -27,12 +27,7 @@ import json
 from time import perf_counter
 from typing import Any
 
-from hybrid_rl import UsageError, arguments, command
-from hybrid_rl.networks.precision import PRECISIONS
-from hybrid_rl.run.files.integrity import write_text
-from hybrid_rl.run.machine.jax_settings import prepare
-from hybrid_rl.settings import build as config
-from hybrid_rl.settings import groups as conf_files
+from hybrid_rl import UsageError, arguments, command, compose, names, precision, prepare, provenance
 from hybrid_rl.tools.benchmark.parts import PARTS, TASKS, Table
 
 EXPERIMENT = "thesis/fig_3_2_halfcheetah"
@@ -79,7 +74,7 @@ ARGUMENTS = (
         "precision",
         [],
         "of networks; of part loop several, or the method's",
-        arguments.several(*PRECISIONS),
+        arguments.several(*precision.PRECISIONS),
     ),
     arguments.Argument(
         "seconds", 3.0, "of a row of parts shares and loop, in each round", arguments.number(0.0)
@@ -98,15 +93,14 @@ def _check(settings: dict[str, Any]) -> None:
             value = ",".join(value) if isinstance(value, list) else value
             line = f"{name}={value}: parts={','.join(settings['parts'])} does not use it"
             raise UsageError(f"{line}; {', '.join(parts)} would")
-    arguments.several(*conf_files.options("task"))("tasks", settings["tasks"] or TASKS)
-    arguments.several(*conf_files.options("algo"))("algo", settings["algo"])
+    arguments.several(*names("task"))("tasks", settings["tasks"] or TASKS)
+    arguments.several(*names("algo"))("algo", settings["algo"])
 
 
 def main() -> None:
     """The command."""
     import jax
 
-    from hybrid_rl.run.machine import provenance
     from hybrid_rl.tools.benchmark.picture import draw
 
     given, changes = arguments.read(__doc__, ARGUMENTS, GROUPS)
@@ -114,8 +108,8 @@ def main() -> None:
     out, rounds = arguments.output("out", settings["out"], (".json",)), settings["rounds"]
     _check(settings)
     threads = ["physics=mjx"] if "mjx" in (settings["physics"] or "") else []
-    precision = next(iter(settings["precision"]), "auto")
-    prepare(config.load([*threads, f"precision={precision}"]))
+    chosen = next(iter(settings["precision"]), "auto")
+    prepare(compose([*threads, f"precision={chosen}"]))
     sizes = SIZES["cpu" if jax.default_backend() == "cpu" else "gpu"] | {"experiment": EXPERIMENT}
     machine = provenance.device()
     print(f"{machine}; medians of {rounds} rounds, ratios to the first line of a table")
@@ -130,7 +124,9 @@ def main() -> None:
         for table in PARTS[part](settings | left, rounds):
             tables.append(table)
             numbers = {"machine": machine, "versions": provenance.versions(), "asked": asked}
-            write_text(out, json.dumps({**numbers, "tables": tables}, indent=1) + "\n")
+            out.write_text(
+                json.dumps({**numbers, "tables": tables}, indent=1) + "\n", encoding="utf-8"
+            )
     pictures = draw(tables, out.with_suffix(".png"))
     print(f"\n{out} and {', '.join(map(str, pictures))}")
 

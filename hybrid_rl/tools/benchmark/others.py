@@ -8,6 +8,7 @@ Bare loops step the compiled model that our world steps, so solver, iterations, 
 step are equal. Playground's world has a model and solver settings of its own.
 """
 
+import os
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
@@ -19,7 +20,6 @@ import numpy as np
 import optax
 
 from hybrid_rl import Episode, Physics
-from hybrid_rl.envs.mujoco import native
 from hybrid_rl.tools.benchmark.ours import beginning, compile_contestant, recalled, world
 from hybrid_rl.tools.benchmark.race import Contestant
 from hybrid_rl.types import Batch, Spec
@@ -38,7 +38,7 @@ def bare_native(task: str, count: int, steps: int) -> Contestant:
     from mujoco import rollout
 
     body, first = _first(task, count)
-    model, threads = body.model, min(native.cores(), count)
+    model, threads = body.model, min(os.cpu_count() or 1, count)
     data = [mujoco.MjData(model) for _ in range(threads)]
     parts = (jnp.zeros((count, 1)), first.qpos, first.qvel, first.act)  # mjSTATE_FULLPHYSICS
     start = np.concatenate([np.asarray(x, float) for x in parts if x is not None], 1)

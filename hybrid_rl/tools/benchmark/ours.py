@@ -12,9 +12,8 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl import Agent, Episode, Loop
+from hybrid_rl import Agent, Episode, Loop, build, compose
 from hybrid_rl.controllers.constant import ConstantController
-from hybrid_rl.settings import build as config
 from hybrid_rl.tools.benchmark.products import alone as products_alone
 from hybrid_rl.tools.benchmark.products import operations, products
 from hybrid_rl.tools.benchmark.race import Contestant
@@ -79,7 +78,7 @@ def shares(agent: Agent, learners: int, seconds: float) -> tuple[list[Contestant
 
 def world(task: str, physics: str) -> Episode:
     """The world of a task, in episodes."""
-    return config.build(config.load([f"task={task}", f"physics={physics}"])).agent.episode
+    return build(compose([f"task={task}", f"physics={physics}"])).agent.episode
 
 
 def beginning(task: str, physics: str, count: int) -> tuple[Episode, EnvState, Array]:

@@ -14,11 +14,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from hybrid_rl import Agent, UsageError, arguments
-from hybrid_rl.analysis.curves import plural
-from hybrid_rl.networks import precision
-from hybrid_rl.run.machine.jax_settings import CACHE
-from hybrid_rl.settings import build as config
+from hybrid_rl import Agent, UsageError, arguments, build, compose, precision
 from hybrid_rl.tools.benchmark.race import Contestant, race
 
 TASKS = "halfcheetah,hopper,cartpole"
@@ -127,7 +123,7 @@ def loop(settings: Settings, rounds: int) -> Iterator[Table]:
             field = []
             for implementation in settings["physics"].split(","):
                 chosen = _config(settings, implementation, size)
-                agent = config.build(chosen).agent
+                agent = build(chosen).agent
                 for asked in settings["precision"] or [chosen.precision]:
                     with precision.using(asked):
                         name = f"{implementation}, {precision.current()}"
@@ -160,7 +156,7 @@ def compiling(settings: Settings, rounds: int) -> Iterator[Table]:
     with tempfile.TemporaryDirectory() as folder:
         line = [sys.executable, "-m", "hybrid_rl.train", f"experiment={settings['experiment']}"]
         line += [f"algo={settings['algo']}", "total_steps=1", "log_every=1", "eval_modes=[]"]
-        own = {key: text for key, text in os.environ.items() if key != CACHE}
+        own = {key: text for key, text in os.environ.items() if key != "JAX_COMPILATION_CACHE_DIR"}
         rows = []
         for name in ("cold", "cached"):
             began = perf_counter()
@@ -184,8 +180,13 @@ PARTS = {
 }
 
 
+def plural(count: int, noun: str) -> str:
+    """The count with its noun: "1 seed", "2 seeds"."""
+    return f"{count:,} {noun}{'s' * (count != 1)}"
+
+
 def _agent(settings: Settings, physics: str = "auto", size: str = "default") -> Agent:
-    return config.build(_config(settings, physics, size)).agent
+    return build(_config(settings, physics, size)).agent
 
 
 def _config(settings: Settings, physics: str, size: str) -> Any:
@@ -195,7 +196,7 @@ def _config(settings: Settings, physics: str, size: str) -> Any:
     names += [f"algo={settings['algo']}", f"physics={physics}"]
     names += [f"{key}={value}" for key, value in settings.items() if "." in key]
     steps = "total_steps=20000"  # bounds the replay memory of many learners
-    return config.load([*names, steps])
+    return compose([*names, steps])
 
 
 def _counts(settings: Settings, key: str) -> list[int]:

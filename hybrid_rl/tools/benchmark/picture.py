@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from hybrid_rl import style
-from hybrid_rl.files.atomic import replacing
 
 Table = dict[str, Any]  # part, what, unit, rows of name and rate
 WIDTH, BAR, HEAD = 4.2, 0.27, 0.5  # [in] of a panel; heights of a bar, and of a panel's title
@@ -47,8 +46,7 @@ def _picture(tables: Sequence[Table], out: Path) -> None:
             axes.remove()
         units = ", ".join(dict.fromkeys(table["unit"] for table in tables))
         figure.suptitle(f"{tables[0]['part']} [{units}]", fontsize=10)
-        with replacing(out) as draft:
-            figure.savefig(draft, dpi=150)
+        figure.savefig(out, dpi=150)
 
 
 def _heights(tables: Sequence[Table], across: int) -> list[float]:

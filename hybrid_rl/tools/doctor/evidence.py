@@ -15,17 +15,9 @@ from typing import Any
 import jax
 import numpy as np
 
-from hybrid_rl import CheckpointError, Trained, UsageError, load
-from hybrid_rl.analysis.held_out import RandomActions
-from hybrid_rl.analysis.results import RunFolder
+from hybrid_rl import Run, RunFolder, Trained, UsageError, decisions, load, rebuilt
 from hybrid_rl.controllers.constant import ConstantController
-from hybrid_rl.data.replay import unpack
-from hybrid_rl.run import folder as run_folder
-from hybrid_rl.run.checkpoints import checkpoint
-from hybrid_rl.run.machine.jax_settings import prepare
-from hybrid_rl.run.saved import build_run, restore
-from hybrid_rl.settings.build import Run
-from hybrid_rl.tools.doctor.tried import Tried, episodes
+from hybrid_rl.tools.doctor.tried import RandomActions, Tried, episodes
 from hybrid_rl.types import Params, Transition
 
 LEARNERS = 4  # of a run that are examined one by one
@@ -39,7 +31,6 @@ class Evidence:
     """A run, as far as its folder holds it."""
 
     folder: RunFolder
-    config: Any  # of config.yaml
     run: Run
     made: Transition | None  # [K, T, ...] NumPy; None: no checkpoint has the replay memory
     whole: "Evidence | None" = None  # of the run, of which this is a learner's part
@@ -93,14 +84,14 @@ class Evidence:
         return rows if seed is None else [row for row in rows if row["seed"] == seed]
 
     @cached_property
-    def _trained(self) -> Trained | None:
+    def trained(self) -> Trained | None:
         """The learners; None: there is nothing yet, without a checkpoint."""
-        return load(self.path) if checkpoint.steps(self.path / "checkpoints") else None
+        return load(self.path) if any(self.path.glob("checkpoints/[0-9]*")) else None
 
     @property
     def params(self) -> Params | None:
         """What the learner has learned; None: nothing yet."""
-        trained = (self.whole or self)._trained
+        trained = (self.whole or self).trained
         learned: Any = trained and trained.params
         return learned and jax.tree.map(lambda leaf: leaf[self.learner], learned)
 
@@ -122,7 +113,7 @@ class Evidence:
 
     @cached_property
     def _by_policies(self) -> list[Tried] | None:
-        policy, trained = self.run.controllers.get("policy"), self._trained
+        policy, trained = self.run.controllers.get("policy"), self.trained
         if policy is None or trained is None:
             return None
         number = len(self.learners)
@@ -180,30 +171,9 @@ def of_each(check: Callable[[Evidence], str | None]) -> Callable[[Evidence], str
 
 def read(path: Path) -> Evidence:
     """The run in `path`."""
-    config = run_folder.read(path, "run")
-    if run_folder.rowless(path):
+    run, folder = rebuilt(path), RunFolder(path)
+    if not folder.rows:
         raise UsageError(f"run={path}: {path / 'metrics.jsonl'}: no row of metrics yet")
-    with run_folder.blame_config(path):
-        prepare(config)
-        run = build_run(config, "memory")
-        made = _made(path, config, run)
-        damaged = made is not None and not all(np.isfinite(each).all() for each in made)
-        return Evidence(RunFolder(path), config, run, None if damaged else made, damaged=damaged)
-
-
-def _made(path: Path, config: Any, run: Run) -> Transition | None:
-    """The decisions in the newest sound checkpoint [K, T, ...]."""
-    if not (config.checkpoint_replay and checkpoint.steps(path / "checkpoints")):
-        return None
-    try:
-        memory: Any = restore(path, run, "memory")[1].memory
-    except CheckpointError:
-        return None
-    rows: Any = np.asarray(memory.rows)
-    count = int(np.asarray(memory.count).min())
-    length = rows.shape[1]
-    if count > length:  # the ring is full: from the oldest on
-        rows = np.roll(rows, -(count % length), axis=1)
-    rows = rows[:, : min(count, length)].swapaxes(1, 2)
-    rows = rows.reshape(-1, *rows.shape[2:])
-    return jax.tree.map(np.asarray, unpack(rows, run.agent.spec))
+    made = decisions(path, run)
+    damaged = made is not None and not all(np.isfinite(each).all() for each in made)
+    return Evidence(folder, run, None if damaged else made, damaged=damaged)

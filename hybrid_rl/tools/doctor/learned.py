@@ -7,8 +7,7 @@ from typing import Any
 import jax
 import numpy as np
 
-from hybrid_rl.core.lifting import is_identity
-from hybrid_rl.run.logs.rows import of_world
+from hybrid_rl import lifting
 from hybrid_rl.tools.doctor.evidence import STILL, Evidence
 from hybrid_rl.tools.doctor.limits import ENOUGH, INFLATED, OUTWEIGHED, SUMMED, UNSEEN
 
@@ -31,7 +30,7 @@ def diverged(run: Evidence) -> str | None:
     what = str(first["quantity"])
     cure = (
         "the world returned it: mend its reward or its observation there"
-        if of_world(what)
+        if what.startswith("world/") and what != "world/action"
         else "begin again with a smaller learning rate, or precision=float32"
     )
     return f"{what} is not finite from step {first['step']:,} on, seed {first['seed']}: {cure}"
@@ -47,7 +46,7 @@ def forecast(run: Evidence) -> str | None:
     learner: Any = run.run.agent.learners.get("model")
     if learner is None or run.params is None or run.made is None:
         return None
-    if not is_identity(learner.model, run.params.model, run.run.agent.spec.obs):
+    if not lifting.is_identity(learner.model, run.params.model, run.run.agent.spec.obs):
         return None
     where = run.at(0)
     own = tuple(
@@ -102,7 +101,7 @@ def random(run: Evidence) -> str | None:
     variance of the noise.
     """
     agent = run.run.agent
-    known = agent.replay.num_demonstrated(agent.num_envs) or run.config.get("begun")
+    known = agent.replay.num_demonstrated(agent.num_envs) or run.run.config.get("begun")
     if known or not {"policy", "model"} & set(agent.learners):
         return None
     p = 1 + agent.spec.obs + agent.spec.act

@@ -7,6 +7,8 @@ have chosen it. A linear policy keeps its direction for many decisions, which in
 each decision does not: it can move what is slow.
 """
 
+from dataclasses import replace
+from math import inf
 from time import monotonic
 from typing import Any
 
@@ -15,17 +17,16 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from hybrid_rl import evaluate
 from hybrid_rl.envs.adapters.external import External
-from hybrid_rl.envs.adapters.unstepped import Unstepped
-from hybrid_rl.outside.host_loop import HostEvaluator
 from hybrid_rl.tools.doctor.evidence import Evidence
 from hybrid_rl.tools.doctor.limits import ERRORS
-from hybrid_rl.training.rollout import evaluate_episodes
+from hybrid_rl.tools.doctor.tried import in_jax
 from hybrid_rl.types import Params, Spec
 
 POLICIES, EPISODES = 50, 16  # tried once; of the best one, and of the run's policy
 LONGEST = 30.0  # [s] of an evaluation in Gymnasium, or there is none
-START_KEY = 3_000_000  # of episodes, which no evaluation uses
+START_SEED = 3_000_000  # of episodes, which no evaluation uses
 
 
 class Linear:
@@ -81,17 +82,10 @@ def _returns(
 ) -> np.ndarray | None:
     """[S, number] of new episodes with params [S, ...]; None: they cannot be made, or take long."""
     episode, learners = run.run.agent.episode, len(jax.tree.leaves(params)[0])
-    keys = jax.random.split(jax.random.key(START_KEY + key), (learners, number))
-    if isinstance(episode.env, External):
-        end = monotonic() + LONGEST
-        made = HostEvaluator(episode, controller, params, keys)(
-            params, keys, lambda: monotonic() > end
-        )
-        return made and made["return"]
-    if isinstance(episode.env, Unstepped):
+    outside = isinstance(episode.env, External)
+    if run.trained is None or not (outside or in_jax(episode)):
         return None
-
-    def one(params: Params, keys: Array) -> Array:
-        return evaluate_episodes(episode, controller, params, keys)["return"]
-
-    return np.asarray(jax.jit(jax.vmap(one))(params, keys))
+    first, end = START_SEED + key * POLICIES, monotonic() + (LONGEST if outside else inf)
+    seeds = tuple(range(first, first + learners))
+    made = replace(run.trained, controllers={"full": controller}, params=params, seeds=seeds)
+    return evaluate(made, "full", number, lambda _: monotonic() > end).get("return")

@@ -4,12 +4,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 
-from hybrid_rl import Episode
-from hybrid_rl.envs.adapters.unstepped import Unstepped
-from hybrid_rl.training.rollout import rollout_with_actions
-from hybrid_rl.types import EnvState, Params, Transition
+from hybrid_rl import Episode, UsageError, rollout
+from hybrid_rl.types import EnvState, Params, Spec, Transition
 
 START_KEY = 2_000_000  # of episodes, which no evaluation uses
 FEWEST, EPISODES = 16, 64  # of them
@@ -41,6 +40,27 @@ class Tried:
         return Transition(*rows)
 
 
+class RandomActions:
+    """Uniform actions."""
+
+    def init(self, spec: Spec) -> jax.Array:
+        """An action that gives the size."""
+        return jnp.zeros(spec.act)
+
+    def act(self, params: Params, state: Any, obs: Any, key: jax.Array) -> tuple[Any, ...]:
+        """Action [m], the state, no metrics."""
+        return jax.random.uniform(key, state.shape, minval=-1, maxval=1), state, {}
+
+
+def in_jax(episode: Episode) -> bool:
+    """Whether the world steps in JAX, and not outside, as a robot does."""
+    try:
+        state = jax.eval_shape(episode.reset, jax.random.key(0))
+        return bool(jax.eval_shape(episode.step, state, jnp.zeros(episode.spec.act)))
+    except UsageError:
+        return False
+
+
 def episodes(
     episode: Episode, controller: Any, params: Params, learners: int = 1, longer: int = 1
 ) -> list[Tried] | None:
@@ -48,14 +68,14 @@ def episodes(
 
     params: [learners, ...].
     """
-    if isinstance(episode.env, Unstepped):
+    if not in_jax(episode):
         return None
     steps = longer * episode.steps
     number = min(max(DECISIONS // steps, FEWEST), EPISODES)
     world = replace(episode, steps=steps)
 
     def one(params: Params, key: jax.Array) -> tuple:
-        actions, states = rollout_with_actions(world, controller, params, key, steps)
+        actions, states = rollout.rollout_with_actions(world, controller, params, key, steps)
         return actions, _seen(states)
 
     keys = jax.random.split(jax.random.key(START_KEY), number)

@@ -20,7 +20,7 @@ import base64
 import html
 import json
 from collections.abc import Sequence
-from datetime import datetime
+from datetime import datetime, timedelta
 from pathlib import Path
 from string import Template
 from tempfile import TemporaryDirectory
@@ -28,13 +28,8 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl import Curve, UsageError, __version__, arguments, command
-from hybrid_rl.analysis.curves import area, plural, spread
-from hybrid_rl.analysis.results import RunFolder, differences, find
-from hybrid_rl.run.files.integrity import write_text
-from hybrid_rl.run.files.reading import json_file
-from hybrid_rl.run.files.reading import text as text_of
-from hybrid_rl.run.logs.progress import clock
+import hybrid_rl as hr
+from hybrid_rl import Curve, RunFolder, UsageError, arguments, command, spread
 from hybrid_rl.tools.report import panels
 from hybrid_rl.tools.report.entry import entry
 from hybrid_rl.tools.report.html_table import table
@@ -74,7 +69,7 @@ def page(runs: Sequence[RunFolder], video: bool = True) -> str:
     sections = "\n".join(
         f"<section><h2>{name}</h2>\n{text}</section>" for name, text in parts if text
     )
-    about = f"hybrid_rl {__version__}, {datetime.now():%Y-%m-%d %H:%M}"
+    about = f"hybrid_rl {hr.__version__}, {datetime.now():%Y-%m-%d %H:%M}"
     template = Template(TEMPLATE.read_text(encoding="utf-8"))
     return template.substitute(title=html.escape(title), about=about, sections=sections)
 
@@ -107,7 +102,7 @@ def _runs(runs: Sequence[RunFolder]) -> str:
         wall, speed = get("wall_s"), get("env_steps_per_s")
         return [
             *(run.path, get("task"), get("algo"), seeds, steps, _state(run), *results),
-            *(speed and round(speed), wall and clock(wall)),
+            *(speed and round(speed), wall and str(timedelta(seconds=round(wall)))),
         ]
 
     note = "<p class='quiet'>The last evaluation, and the training return over the last tenth of "
@@ -145,16 +140,10 @@ def _videos(runs: Sequence[RunFolder], wanted: bool) -> str:
 
 def _drawn(folder: Path) -> dict[str, bytes]:
     """The beginning of the first evaluation episode of a run, with its caption."""
-    from hybrid_rl import load
-    from hybrid_rl.analysis.film import draw_film, episode
-    from hybrid_rl.envs.mujoco import offscreen
-
-    offscreen.backend()
-    trained = load(folder)
-    film = episode(trained, steps=min(SHOWN, trained.episode.steps))
+    trained = hr.load(folder)
     with TemporaryDirectory() as parent:
         out = Path(parent, "video.mp4")
-        draw_film(trained.episode, film, out)
+        film = hr.film(trained, out, steps=min(SHOWN, trained.episode.steps))
         caption = (
             f"after {trained.step:,} decisions of training: the first {len(film.poses) - 1} of "
             f"{trained.episode.steps:,} decisions of an episode, return so far {film.total:,.1f}"
@@ -184,14 +173,17 @@ def _ends(curve: Curve) -> list[Any]:
     """A row about a curve: its last value and its mean, over the points that all seeds have."""
     row = [curve.metric, curve.task, curve.label, len(curve.seeds)]
     at = np.flatnonzero(curve.shared)
-    return [*row, *((spread(curve.each[:, at[-1]]), spread(area(curve))) if len(at) else ("", ""))]
+    return [
+        *row,
+        *((spread(curve.each[:, at[-1]]), spread(hr.area(curve))) if len(at) else ("", "")),
+    ]
 
 
 def _evaluations(runs: Sequence[RunFolder]) -> str:
     """The tables of `evaluate`; without any, how to get them."""
     rows = []
     for run in runs:
-        for file in sorted(run.path.glob("evaluation_*.json")):
+        for file in filter(Path.is_file, sorted(run.path.glob("evaluation_*.json"))):
             rows += _evaluation(run, file)
     if not rows:
         first = html.escape(f"python -m hybrid_rl.evaluate run={runs[0].path}")
@@ -206,7 +198,7 @@ def _evaluations(runs: Sequence[RunFolder]) -> str:
 def _evaluation(run: RunFolder, file: Path) -> list[list[Any]]:
     """A row for each seed of a file of `evaluate`."""
     try:
-        values = json_file(file)
+        values = json.loads(file.read_text(encoding="utf-8"))
         each = zip(values["seeds"], values["returns"], strict=True)
         rows = []
         for i, (seed, got) in enumerate(each):
@@ -215,9 +207,7 @@ def _evaluation(run: RunFolder, file: Path) -> list[list[Any]]:
             row = [run.path, mode, values["step"], seed, len(got), *map(float, ends)]
             rows.append([*row, *(f"{s:.0%}" for s in values.get("success", [])[i : i + 1])])
         return rows
-    except UsageError:
-        raise
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
+    except (ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:
         raise UsageError(f"{file}: is no evaluation that `evaluate` wrote") from error
 
 
@@ -225,7 +215,7 @@ def _configuration(runs: Sequence[RunFolder]) -> str:
     """The settings in which the runs differ, and all settings of each run."""
     text = ""
     if len(runs) > 1:
-        each = differences(runs)
+        each = hr.differences(runs)
         keys = list(dict.fromkeys(key for one in each for key in one))
         rows = [[key, *(one.get(key) for one in each)] for key in keys]
         none = "<p>The runs have the same settings, apart from their seeds and length.</p>"
@@ -233,7 +223,8 @@ def _configuration(runs: Sequence[RunFolder]) -> str:
     same: dict[str, list[str]] = {}
     for run in runs:
         if run.settings:  # there is a file, of keys
-            same.setdefault(text_of(run.path / "config.yaml"), []).append(str(run.path))
+            whole = (run.path / "config.yaml").read_text(encoding="utf-8")
+            same.setdefault(whole, []).append(str(run.path))
     return text + "\n".join(
         f"<details><summary>config.yaml of {html.escape(', '.join(paths))}</summary>"
         f"<pre>{html.escape(yaml)}</pre></details>"
@@ -257,24 +248,19 @@ def _machine(runs: Sequence[RunFolder]) -> str:
     return table(("", *heads), [[n, *(c.get(n) for c in columns)] for n in names])
 
 
-def _folders(given: str) -> list[RunFolder]:
-    """The run folders that run= names."""
-    return [RunFolder(path) for path in find(given, "run")]
-
-
 def main() -> None:
     """The command."""
     given, _ = arguments.read(__doc__, ARGUMENTS)
-    runs = _folders(given["run"])
+    runs = hr.runs(given["run"], "run")
     default = f"{runs[0].path}/report.html" if len(runs) == 1 else "report.html"
     out = arguments.output("out", given["out"] or default, (".html", ".json"))
     if out.suffix == ".json":
-        write_text(out, entry(runs))
+        out.write_text(entry(runs), encoding="utf-8")
         print(f"{out}: now the link, and in the name what is no default, by hand; then make pages")
         return
-    write_text(out, page(runs, given["video"] == "auto"))
+    out.write_text(page(runs, given["video"] == "auto"), encoding="utf-8")
     size = out.stat().st_size / 1e6
-    print(f"{out}: {plural(len(runs), 'run')}, {size:.1f} MB")
+    print(f"{out}: {len(runs)} run{'s' * (len(runs) > 1)}, {size:.1f} MB")
 
 
 if __name__ == "__main__":

@@ -13,8 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl import Curve, UsageError, curves
-from hybrid_rl.analysis.results import RunFolder
+from hybrid_rl import Curve, RunFolder, UsageError, curves
 
 RETURN = "eval/return"
 KEYS = ("name", "link", "machine", "rows")

@@ -7,8 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.analysis.curves import format_number
-
 NUMBER = re.compile(r"(-?[\d,.]+%?( \[.*\])?)?")  # with its band
 
 
@@ -31,7 +29,7 @@ def _text(value: Any) -> str:
         case None:
             return ""
         case float() | np.floating():
-            return format_number(float(value))
+            return f"{value:,.4g}" if abs(value) < 1000 else f"{value:,.0f}"
         case int():
             return f"{value:,}"
         case _:

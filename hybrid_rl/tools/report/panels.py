@@ -12,9 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hybrid_rl import Curve, UsageError, curves, style
-from hybrid_rl.analysis.curves_picture import plot
-from hybrid_rl.analysis.results import NOT_METRICS, RunFolder
+from hybrid_rl import Curve, RunFolder, UsageError, curves, plot, style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -38,7 +36,7 @@ INK = ("#000000", "#444444")  # of text and of notes
 
 def metrics(runs: Sequence[RunFolder]) -> dict[str, list[str]]:
     """Title of each section -> the metrics of the runs that belong there."""
-    names = sorted({name for run in runs for row in run.rows for name in row} - {*NOT_METRICS})
+    names = sorted({name for run in runs for row in run.rows for name in row})
     sections = {}
     for title, beginnings in SECTIONS.items():
         found = [name for start in beginnings for name in names if name.startswith(start)]

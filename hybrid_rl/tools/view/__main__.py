@@ -32,8 +32,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from hybrid_rl import UsageError, arguments, command
-from hybrid_rl.errors import install
+from hybrid_rl import UsageError, arguments, command, load, names
 
 
 def port(name: str, given: str) -> int:
@@ -43,6 +42,7 @@ def port(name: str, given: str) -> int:
     return number
 
 
+INSTALL = 'pip install "hybrid_rl[view]"'
 CHANGES = arguments.ROBOT_CHANGES
 ARGUMENTS = (
     *arguments.ROBOT,
@@ -57,15 +57,14 @@ def open_session(given: Mapping[str, Any], changes: Mapping[str, str], server: A
     server: makes a viser.ViserServer, after all that can be wrong with the arguments.
     """
     from hybrid_rl.envs.adapters.external import External
-    from hybrid_rl.run.saved import load_named
-    from hybrid_rl.settings.groups import options
     from hybrid_rl.tools.view.following import Follower
     from hybrid_rl.tools.view.panel import Wishes
     from hybrid_rl.tools.view.player import Choice, Player
     from hybrid_rl.tools.view.session import Session
     from hybrid_rl.tools.view.subject import Source, learner
 
-    trained = None if given["task"] else load_named(given)
+    named = "run" if given["run"] else "policy"
+    trained = None if given["task"] else load(given[named], named)
     source = Source(given, changes, trained)
     if trained is not None and isinstance(trained.episode.env, External):
         raise UsageError("a Gymnasium environment draws itself; use render")
@@ -74,7 +73,7 @@ def open_session(given: Mapping[str, Any], changes: Mapping[str, str], server: A
     player = Player(source, learner(trained, given["seed"]), choice, seed)
     folder = Path(given["run"]) if given["run"] else None
     follower = Follower(folder, trained, given["seed"]) if folder and trained else None
-    rewards = options("reward") if source.plans else []
+    rewards = names("reward") if source.plans else []
     name = given["task"] or (trained.task if trained else "")
     step = trained.step if trained else None
     return Session(server(), name, player, Wishes(player.wanted, seed), rewards, step, follower)
@@ -112,7 +111,7 @@ def import_viser() -> Any:
         import_module("mjviser")
         return import_module("viser")
     except ImportError as error:
-        raise UsageError(f"view: needs viser and mjviser; {install('view')}") from error
+        raise UsageError(f"view: needs viser and mjviser; {INSTALL}") from error
 
 
 def show(

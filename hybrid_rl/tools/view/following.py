@@ -1,11 +1,10 @@
 """The newest checkpoint of a run that is training."""
 
 import threading
+from contextlib import suppress
 from pathlib import Path
 
-from hybrid_rl import CheckpointError, Trained
-from hybrid_rl.run.checkpoints import checkpoint
-from hybrid_rl.run.saved import build_run, of
+from hybrid_rl import CheckpointError, Trained, newest
 from hybrid_rl.tools.view.subject import learner
 from hybrid_rl.types import Params
 
@@ -17,9 +16,8 @@ class Follower:
 
     def __init__(self, folder: Path, trained: Trained, seed: int | None) -> None:
         """Begin; seed: of the learner, None is the first."""
-        assert trained.config is not None
-        self._folder, self._seed, self._config = folder, seed, trained.config
-        self._step, self._found = trained.step, None
+        self._folder, self._seed = folder, seed
+        self._trained, self._found = trained, None
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._watch, daemon=True, name="follow")
         self._thread.start()
@@ -34,15 +32,8 @@ class Follower:
         self._over.set()
 
     def _watch(self) -> None:
-        run = None
         while not self._over.wait(EVERY):
-            steps = checkpoint.steps(self._folder / "checkpoints")
-            if not steps or steps[-1] <= self._step:
-                continue
-            run = run or build_run(self._config)
-            try:
-                trained = of(run, self._folder)
-            except CheckpointError:  # replaced while it was read; the next one follows
-                continue
-            self._step = trained.step
-            self._found = learner(trained, self._seed), trained.step
+            with suppress(CheckpointError):  # replaced while it was read; the next one follows
+                if trained := newest(self._trained, self._folder):
+                    self._trained = trained
+                    self._found = learner(trained, self._seed), trained.step

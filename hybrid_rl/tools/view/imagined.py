@@ -16,8 +16,7 @@ import mujoco
 import numpy as np
 from jax import Array
 
-from hybrid_rl import Episode, lifting
-from hybrid_rl.envs.mujoco.scenery import pose_of, simulated
+from hybrid_rl import Episode, lifting, scenery
 from hybrid_rl.protocols import Controller
 from hybrid_rl.types import EnvState, Params, Path
 
@@ -33,7 +32,7 @@ Reading = Callable[[EnvState, Any], Array]
 
 def reading(episode: Episode) -> Reading | None:
     """The first kind of reading that fits; None: its imagined states cannot be drawn."""
-    env, pose = episode.env, pose_of(episode.env)
+    env, pose = episode.env, scenery.pose_of(episode.env)
     if hasattr(env, "points"):
         points: Any = env
         return lambda state, x: points.points(state, x[:, : env.spec.obs])
@@ -62,7 +61,7 @@ def _of_robot(episode: Episode, states: EnvState) -> Reading | None:
     Each of its positions is observed, or moves as an observed speed. What is drawn beside it, such
     as a target, stays.
     """
-    found, pose = simulated(states), pose_of(episode.env)
+    found, pose = scenery.simulated(states), scenery.pose_of(episode.env)
     if len(found) != 1:
         return None
     q, v = (np.asarray(each) for each in (found[0].qpos, found[0].qvel))
@@ -74,7 +73,7 @@ def _of_robot(episode: Episode, states: EnvState) -> Reading | None:
         return None
 
     def read(state: EnvState, x: Array) -> Array:
-        start = simulated(state)[0].qpos
+        start = scenery.simulated(state)[0].qpos
         beside = jnp.broadcast_to(pose(state)[len(known) :], (len(x), nq - len(known)))
         return jnp.hstack([jnp.stack([of(x, start[i]) for i, of in enumerate(known)], 1), beside])
 
@@ -132,7 +131,7 @@ def _of_local(episode: Episode, states: EnvState) -> Reading | None:
 
 
 def _of_state(env: Any, data: Callable[[Array], Array]) -> Reading:
-    pose, o = pose_of(env), env.spec.obs
+    pose, o = scenery.pose_of(env), env.spec.obs
 
     def read(state: EnvState, x: Array) -> Array:
         return jax.vmap(lambda obs: pose(state.replace(data=data(obs), obs=obs)))(x[:, :o])
@@ -143,7 +142,7 @@ def _of_state(env: Any, data: Callable[[Array], Array]) -> Reading:
 def seen(read: Reading | None, env: Any, state: EnvState, paths: Path) -> Array | None:
     """What is drawn of imagined paths [K, ...] from `state`: a Reading of each; None: nothing."""
     if isinstance(paths.x, EnvState):
-        return jax.vmap(jax.vmap(pose_of(env)))(paths.x)
+        return jax.vmap(jax.vmap(scenery.pose_of(env)))(paths.x)
     return None if read is None else jax.vmap(lambda x: read(state, x))(paths.x)
 
 
@@ -165,7 +164,7 @@ def of_policy(episode: Episode, controllers: dict[str, Controller], mode: str) -
             after = model.step(params.model, x, u)
             return after, (after, u)
 
-        x = lifting.lift(model, params.model, obs)
+        x = lifting.start(model, params, obs)
         _, (xs, us) = jax.lax.scan(ahead, x, length=AHEAD)
         return Path(jnp.concatenate([x[None], xs])[None], us[None])
 

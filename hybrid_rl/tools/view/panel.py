@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 from viser import ViserServer
 
-from hybrid_rl.settings.values import SEEDS
 from hybrid_rl.tools.view.history import PLOTS, History
 from hybrid_rl.tools.view.player import Choice
 from hybrid_rl.tools.view.push import Pull
 from hybrid_rl.tools.view.scene import BRIGHT, PALE
 from hybrid_rl.tools.view.subject import Slider
 
+LAST_SEED = 2**32 - 1
 STEP, AGAIN = "Step", "New episode"
 LEGEND = '<div style="font-size: 12px; padding: 0 1em 0.5em">{}</div>'.format(
     " &nbsp; ".join(
@@ -91,7 +91,7 @@ class Panel:
             else:
                 wishes.again = True
 
-        seed = gui.add_number("seed", wishes.seed, min=0, max=SEEDS - 1, step=1)
+        seed = gui.add_number("seed", wishes.seed, min=0, max=LAST_SEED, step=1)
         seed.on_update(lambda _: self._seeded(int(seed.value)))
         speed = gui.add_slider("speed", 0.1, 1.0, 0.1, wishes.speed, hint="times real time")
         speed.on_update(lambda _: setattr(wishes, "speed", speed.value))

@@ -14,12 +14,10 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from hybrid_rl import UsageError
-from hybrid_rl.envs.mujoco.scenery import check_drawable
+from hybrid_rl import UsageError, rollout, scenery
 from hybrid_rl.tools.view import programs
 from hybrid_rl.tools.view.programs import Actor, Decision, Numbers, World
 from hybrid_rl.tools.view.subject import Source, Subject
-from hybrid_rl.training.rollout import evaluation_keys
 from hybrid_rl.types import EnvState, Params
 
 EPISODES = 100  # of a seed that differ
@@ -58,7 +56,7 @@ class Player:
         self._coming: Future[Cast] | None = None
         self.problem = ""  # why the last choice is not shown
         subject = self._subject(choice)
-        check_drawable(subject.episode.env)
+        scenery.check_drawable(subject.episode.env)
         choice = replace(choice, mode=subject.named(choice.mode))
         quick = "policy" if "policy" in subject.controllers else choice.mode
         self.cast = self._make(replace(choice, mode=quick))
@@ -77,7 +75,7 @@ class Player:
 
     def begin(self, seed: int, number: int = 0) -> None:
         """An episode begins: that of this number in the evaluation of learner `seed`."""
-        key = evaluation_keys(seed, EPISODES)[number % EPISODES]
+        key = rollout.evaluation_keys(seed, EPISODES)[number % EPISODES]
         start, self._key = jax.random.split(key)
         self.state: EnvState = self.cast.world.reset(start)
         self._control = self.cast.actor.begin()

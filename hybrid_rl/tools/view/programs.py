@@ -11,9 +11,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl import Episode
-from hybrid_rl.envs.mujoco.physics import PhysicsState
-from hybrid_rl.envs.mujoco.scenery import pose_of
+from hybrid_rl import Episode, PhysicsState, scenery
 from hybrid_rl.protocols import Controller
 from hybrid_rl.tools.view import imagined
 from hybrid_rl.tools.view.subject import Subject, with_goals
@@ -95,7 +93,7 @@ def world(episode: Episode, numbers: Numbers) -> World:
         episode,
         jax.jit(episode.reset).lower(key).compile(),
         jax.jit(step).lower(_arrays(numbers), like, u).compile(),
-        jax.jit(pose_of(episode.env)).lower(like).compile(),
+        jax.jit(scenery.pose_of(episode.env)).lower(like).compile(),
         jax.tree.structure(like),
     )
 

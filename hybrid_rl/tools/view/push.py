@@ -14,9 +14,7 @@ import jax.numpy as jnp
 import mujoco
 import numpy as np
 
-from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.envs.mujoco.physics import PhysicsState
-from hybrid_rl.envs.mujoco.scenery import simulated
+from hybrid_rl import Physics, PhysicsState, scenery
 from hybrid_rl.types import EnvState
 
 STIFFNESS = 40.0  # [N/m] of the spring, for each kg of the robot
@@ -41,7 +39,7 @@ class Pull:
 
 def possible(state: EnvState) -> bool:
     """Whether the world is one model of MuJoCo."""
-    return len(simulated(state)) == 1
+    return len(scenery.simulated(state)) == 1
 
 
 def force(model: mujoco.MjModel, at: np.ndarray, to: np.ndarray) -> np.ndarray:
@@ -54,7 +52,7 @@ def force(model: mujoco.MjModel, at: np.ndarray, to: np.ndarray) -> np.ndarray:
 
 def change(physics: PhysicsState, pull: Pull, dt: float) -> np.ndarray:
     """dv [nv] of the generalised velocities, by a pull of `dt` [s]; 0 for an unknown body."""
-    model = mjcf.load(physics.asset)
+    model = Physics(physics.asset).model
     data, qfrc = mujoco.MjData(model), np.zeros(model.nv)
     body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, pull.body)
     if body < 0:

@@ -13,7 +13,7 @@ import numpy as np
 from mjviser import ViserMujocoScene
 from viser import ClientHandle, SceneNodeDragEvent, ViserServer
 
-from hybrid_rl.envs.mujoco import scenery
+from hybrid_rl import scenery
 from hybrid_rl.tools.view.imagined import PLANAR, lines, point_of
 from hybrid_rl.tools.view.push import Pull
 

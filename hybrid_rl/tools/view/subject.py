@@ -1,4 +1,4 @@
-"""Who acts in which world, and what of it can be changed while it runs.
+"""The controllers of a window, their world, and its numbers that a slider may change.
 
 A number of a reward or of a constraint is an argument of the compiled programs: a slider moves it
 without a compilation. Everything else makes other programs.
@@ -10,15 +10,13 @@ from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cached_property
 from typing import Any, get_args
 
-from hybrid_rl import Episode, Trained, UsageError
-from hybrid_rl.demonstrate import scripted_expert
+from hybrid_rl import Episode, Trained, UsageError, expert, retargeted
 from hybrid_rl.fields import Must, choices, plain
 from hybrid_rl.protocols import Controller
-from hybrid_rl.run.retarget import apply_changes
-from hybrid_rl.settings.build import PAID
-from hybrid_rl.training.contract import needs_world
 from hybrid_rl.types import Params
 
+GOALS = ("reward", "constraint")  # fields of an episode
+CHOSEN = (*GOALS, "planner", "imagine", "expert")  # arguments that name a part
 DISTURBED = {"delay": 0.25, "sensor_noise": 0.5, "action_noise": 0.5}  # of an episode -> the most
 EFFORT = ("samples", "elites", "refined", "iterations")  # fields of a planner
 QUICK = 4  # times fewer of them
@@ -42,7 +40,7 @@ class Subject:
 
     episode: Episode
     controllers: dict[str, Controller]  # mode -> who acts
-    scripted: bool = False
+    blind: frozenset[str]  # modes that get observations, and not the state of the world
 
     def named(self, mode: str) -> str:
         """The name of `mode` among the controllers; full is the only one where one acts."""
@@ -56,12 +54,12 @@ class Subject:
 
     def sees_world(self, mode: str) -> bool:
         """Whether who acts in `mode` gets the state of the world, and not only observations."""
-        return self.scripted or needs_world(self.controllers[mode])
+        return mode not in self.blind
 
     @cached_property
     def goals(self) -> list[Slider]:
         """The numbers of the reward and of the constraint."""
-        parts = {name: getattr(self.episode, name) for name in PAID}
+        parts = {name: getattr(self.episode, name) for name in GOALS}
         return [each for name, part in parts.items() if part for each in sliders(name, part)]
 
     @cached_property
@@ -118,7 +116,7 @@ def with_goals(whole: Any, episode: Episode, numbers: Mapping[str, Any]) -> Any:
 
     numbers: group.KEY -> value [], which may be traced: the checks of the fields do not run.
     """
-    for name in PAID:
+    for name in GOALS:
         part = getattr(episode, name)
         mine = {key.partition(".")[2]: value for key, value in numbers.items()}
         mine = {key: mine[key] for key in mine if f"{name}.{key}" in numbers}
@@ -167,22 +165,44 @@ class Source:
 
         quick: whether planners think less.
         """
+        given = {name: self.given[name] for name in CHOSEN if self.given[name]}
+        words = {**self.changes, **changes}
         if self.trained is None:
-            episode, controller, _ = scripted_expert(self.given, {**self.changes, **changes})
-            return Subject(episode, {"expert": controller}, scripted=True)
-        words = dict(self.changes)
+            parts = expert(self.given["task"], _overrides(given, words), self._folder)
+            return Subject(parts[0], {"expert": parts[1]}, frozenset())
         if reward != self.given["reward"]:
             words = {key: value for key, value in words.items() if not key.startswith("reward.")}
-        given = {**self.given, "reward": reward}
+        if reward:
+            given["reward"] = reward
+        else:
+            given.pop("reward", None)
         if self.plans and self.trained.agent is None:  # a file: its policy and models, no planner
-            given["planner"] = given["planner"] or "gradient"
-        trained = apply_changes(self.trained, given, {**words, **changes})[0]
+            given.setdefault("planner", "gradient")
+        trained = retargeted(self.trained, _overrides(given, words), self._folder)
         acting = dict(trained.controllers)
         if acting["full"] == acting.get("policy"):
             del acting["full"]
+        blind = frozenset(mode for mode in acting if _observes(trained, mode))
         if quick:
             acting = {mode: quicker(controller) for mode, controller in acting.items()}
-        return Subject(trained.episode, acting)
+        return Subject(trained.episode, acting, blind)
+
+    @property
+    def _folder(self) -> str | None:
+        """The folder with configuration groups of the user's."""
+        return self.given["config_dir"] or None
+
+
+def _overrides(*each: Mapping[str, str]) -> list[str]:
+    return [f"{key}={value}" for some in each for key, value in some.items()]
+
+
+def _observes(trained: Trained, mode: str) -> bool:
+    """Whether observations are enough for who acts in `mode`."""
+    try:
+        return bool(trained.learner(mode=mode))
+    except UsageError:
+        return False
 
 
 def learner(trained: Trained | None, seed: int | None) -> Params:
