@@ -100,7 +100,7 @@ class Exploring:
         self._acting.begin()
 
     def informed(self, sent: np.ndarray, lag: float) -> None:
-        """What was sent, [K + 1, m] or more with the newest last, and how late it acts [decisions]."""
+        """What was sent, [K + 1, m] or more, the newest last; how late it acts [decisions]."""
         control = self._acting.control
         if isinstance(control, AheadState):
             sent = sent[-control.sent.shape[2] :]

@@ -79,7 +79,7 @@ def test_a_delay_is_measured(delay, random):
     given = evidence(*oscillator(delay=delay))
     given.run.agent.random_steps = random
     words = observed.action(given).split()
-    assert words[:3] + words[4:6] == "an action acts decisions late".split()
+    assert words[:3] + words[4:6] == ["an", "action", "acts", "decisions", "late"]
     assert float(words[3]) == pytest.approx(delay if random else round(delay), rel=0.1)
     assert f"episode.lag={float(words[3]) * DT:.3g} " in observed.action(given)
     assert found(given) == {"action"}
