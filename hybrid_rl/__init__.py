@@ -65,6 +65,7 @@ if TYPE_CHECKING:
     from hybrid_rl.evaluate import evaluate as evaluate
     from hybrid_rl.fields import part as part
     from hybrid_rl.networks import precision as precision
+    from hybrid_rl.outside import lag as lag
     from hybrid_rl.run.machine import provenance as provenance
     from hybrid_rl.run.machine.jax_settings import prepare as prepare
     from hybrid_rl.run.online import OnlineLearner as OnlineLearner
@@ -85,7 +86,7 @@ if TYPE_CHECKING:
 _MODULES = (  # that are public, by their last name; train and evaluate can be called
     "analysis.style cli.arguments cli.command core.adjoint core.fisher core.least_squares "
     "core.lifting core.riccati core.sampling core.statistics envs.mujoco.scenery evaluate fields "
-    "networks.precision protocols run.machine.provenance train training.rollout types"
+    "networks.precision outside.lag protocols run.machine.provenance train training.rollout types"
 )
 _MEMBERS = {  # module -> its public names
     "api": "load make",

@@ -100,9 +100,10 @@ class Exploring:
         self._acting.begin()
 
     def informed(self, sent: np.ndarray, lag: float) -> None:
-        """What was sent, [K, m] with the newest last, and how late it acts [decisions]."""
+        """What was sent, [K + 1, m] or more, the newest last; how late it acts [decisions]."""
         control = self._acting.control
         if isinstance(control, AheadState):
+            sent = sent[-control.sent.shape[2] :]
             each, late = np.array(sent, np.float32), np.full((1, 1), lag, np.float32)
             self._acting.control = control._replace(sent=each[None, None], lag=late)
 

@@ -163,7 +163,7 @@ class Actor:
         stamp: of the observation; begin: of the period.
         """
         lag = min((time.monotonic() - stamp + self._lag) / self.spec.dt, PENDING)
-        self._decide.informed(np.array([u for _, u in self._past[-2::-1]]), max(lag, 0.0))
+        self._decide.informed(np.array([u for _, u in self._past[::-1]]), max(lag, 0.0))
         u, rate, last = self._decide(obs, self._number), self.env.rate or 2.0, self._past[0][1]
         action = np.clip(np.clip(u, last - rate, last + rate), -1, 1)
         if not np.isfinite(action).all():

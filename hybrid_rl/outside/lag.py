@@ -44,8 +44,11 @@ def estimated(
 ) -> float:
     """The lag [s] of N decisions at obs [N, o] that led to `after` [N, o]; the rest as of `acted`.
 
-    The actions should be random, and those of successive decisions independent.
+    The actions should be random, and those of successive decisions independent. 0 if fewer than
+    ENOUGH.
     """
+    if len(obs) < ENOUGH:
+        return 0.0
     y, period = after - obs, float(np.median(interval))
     seen, _ = np.linalg.qr(np.column_stack([np.ones(len(obs)), obs]).astype(float))
     y = y / np.maximum(y.std(0), 1e-9)
@@ -71,8 +74,7 @@ def known_lag(env: Robot, folder: Path) -> float | None:
 
 def published_lag(folder: Path, rows: np.ndarray) -> float:
     """The lag by the rows [N] of random decisions, which `known_lag` gives from now on."""
-    names, lag = ("obs", "next_obs", "sent", "times", "interval"), 0.0
-    if len(rows) >= ENOUGH:
-        lag = estimated(*(rows[name] for name in names))
+    names = "obs", "next_obs", "sent", "times", "interval"
+    lag = estimated(*(rows[name] for name in names))
     handover.publish(folder / "lag", np.float64(lag), len(rows))
     return lag

@@ -11,7 +11,7 @@
 
 learn="background": a thread learns while the caller's loop goes on, at most the updates of one
 decision for each; "between_episodes": at the end of an episode, before `observe` returns; "inline":
-in every `observe`, as in training.
+in every `observe`, as in training. episode.lag=0.05: an action acts 0.05 s after its observation.
 """
 
 import threading
@@ -25,7 +25,7 @@ import jax
 import numpy as np
 from omegaconf import DictConfig
 
-from hybrid_rl.envs.adapters.robot import Outside
+from hybrid_rl.envs.adapters.robot import PENDING, Outside
 from hybrid_rl.errors import DivergenceError, UsageError
 from hybrid_rl.outside.acting import Exploring, numbers
 from hybrid_rl.outside.learner import RowLearner, RowLoop
@@ -88,6 +88,10 @@ class OnlineLearner:
         self._decide = Exploring(run.agent, run.seeds[0], run.agent.random_steps)
         self._kind, self._rows = row_type(self._spec), {}  # number -> row
         self._learner = RowLearner(self._loop, self._loop.init(), self._rows.get)
+        self._lag = run.agent.episode.known_lag  # [decisions]
+        if self._lag > PENDING:
+            raise UsageError(f"episode.lag: at most {PENDING} decisions, {PENDING * dt:g} s")
+        self._learner.lag = self._lag * self._spec.dt or None
         self._start(0)
 
     def _start(self, decisions: int) -> None:
@@ -96,6 +100,7 @@ class OnlineLearner:
         self._learner.read = self._learner.learned = decisions
         self._pending: tuple[np.ndarray, np.ndarray] | None = None
         self._stretch = self._episode = 0
+        self._past = np.zeros((PENDING + 1, self._spec.act), np.float32)  # sent, the newest first
         self._error: Exception | None = None
         self._handed, self._closed = 0.0, False
         self._decide.take(self._newest())
@@ -128,6 +133,7 @@ class OnlineLearner:
         if self._pending is not None:
             raise UsageError("act: the last action has no outcome yet; observe or interrupt first")
         obs = numbers("obs", obs, self._spec.obs)
+        self._decide.informed(self._past[::-1], self._lag)
         action = self._decide(obs, self.decisions)
         if not np.isfinite(action).all():
             line = f"act: after {self.decisions} decisions the learner reached NaN or infinity"
@@ -165,6 +171,9 @@ class OnlineLearner:
         row["terminated"], row["truncated"] = bool(terminated), bool(truncated and not terminated)
         if executed is not None:
             row["action"] = numbers("executed", executed, self._spec.act, most=1)
+        self._past = np.concatenate((row["action"][None], self._past[:-1]))
+        row["sent"], row["interval"] = self._past, self._spec.dt
+        row["times"] = -self._spec.dt * np.arange(len(self._past))
         row["number"], row["stretch"] = self.decisions, self._stretch
         row["episode"], row["time"] = self._episode, time.time()
         self._rows[self.decisions], self._pending = row, None
@@ -181,6 +190,7 @@ class OnlineLearner:
         """The episode was broken off without an outcome: the last action is forgotten."""
         self._pending = None
         self._stretch, self._episode = self._stretch + 1, self._episode + 1
+        self._past = np.zeros_like(self._past)
         self._decide.begin()
 
     def _follow(self) -> None:

@@ -73,8 +73,9 @@ def _check_groups(config: DictConfig) -> None:
 
 def time_limit(env: External | Robot, given: Mapping[str, Any]) -> dict[str, int]:
     """The time limit of an environment on the host [decisions], if `given` has none."""
-    late, noise = ("delay", "jitter", "loss", "lag"), ("sensor_noise", "action_noise")
-    for key in (*late, *noise, "randomise", *PAID):
+    own = ("lag",) * isinstance(env, Robot)
+    noise = "sensor_noise", "action_noise"
+    for key in ("delay", "jitter", "loss", *own, *noise, "randomise", *PAID):
         value = given.get(key)
         if isinstance(value, dict):  # of names and ranges
             value = {name: each for name, each in value.items() if each is not None}

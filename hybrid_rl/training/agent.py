@@ -15,6 +15,7 @@ from hybrid_rl.data.replay import Memory, Replay, as_batch
 from hybrid_rl.fields import LARGEST, Count, Natural, part
 from hybrid_rl.protocols import Controller, Learner, Model
 from hybrid_rl.training import contract
+from hybrid_rl.training.ahead import acted, remembered
 from hybrid_rl.training.contract import needs_world
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.keys import Keys
@@ -195,7 +196,8 @@ class Agent:
             plan = trace_once(plan)
             shapes = jax.eval_shape(plan)
             draw = jax.random.uniform(keys.at_random, shapes[0].shape, minval=-1, maxval=1)
-            first = draw, state.control, jax.tree.map(jnp.zeros_like, shapes[2])
+            control = jax.vmap(remembered)(state.control, draw)
+            first = draw, control, jax.tree.map(jnp.zeros_like, shapes[2])
             u, control, metrics = jax.lax.cond(step < self.random_steps, lambda: first, plan)
         else:
             u, control, metrics = plan()
@@ -216,7 +218,9 @@ class Agent:
         episode is done, another one begins. A world that resets itself gives `after` [E, ...]:
         `now`, or the first state of the next episode.
         """
-        action = self.episode.acted(action, now)
+        if self.episode.known_lag:
+            sent = None if now.clock is None else now.clock.sent
+            action = jax.vmap(acted)(state.control, action) if sent is None else sent.acted
         new = Transition(state.env.obs, action, now.reward, now.terminated, now.truncated, now.obs)
         if after is None:
             keys = Keys.of(state.key, self.num_envs) if keys is None else keys

@@ -30,7 +30,7 @@ from hybrid_rl.types import Params, Spec
 class AheadState(NamedTuple):
     """What was sent, and the inner controller's state."""
 
-    sent: Array  # [K, m] the last actions, the newest last
+    sent: Array  # [K + 1, m] the last actions, the newest last
     lag: Array  # [] [decisions] from an observation until its action acts
     inner: Any
 
@@ -47,7 +47,7 @@ class AheadController:
     def init(self, spec: Spec) -> AheadState:
         """Actions of 0 were sent."""
         inner = self.controller.init(spec)
-        return AheadState(jnp.zeros((self.most, spec.act)), jnp.float32(self.lag), inner)
+        return AheadState(jnp.zeros((self.most + 1, spec.act)), jnp.float32(self.lag), inner)
 
     def act(
         self, params: Params, state: AheadState, obs: Array, key: Array
@@ -58,16 +58,12 @@ class AheadController:
             params = params._replace(world=x)
         there = lifting.policy_input(x)[: obs.size]
         u, inner, metrics = self.controller.act(params, state.inner, there, key)
-        sent = jnp.concatenate((state.sent[1:], u[None]))
-        return u, AheadState(sent, state.lag, inner), metrics
+        return u, remembered(state._replace(inner=inner), u), metrics
 
     def predicted(self, params: Params, state: AheadState, x: Any) -> Any:
         """The planning state at which an action that is sent at x begins to act."""
-        whole = jnp.floor(state.lag)
-        share, at = state.lag - whole, self.most - whole.astype(int)
         for j in range(self.most):
-            older, newer = (state.sent[jnp.clip(at + j - i, 0, self.most - 1)] for i in (1, 0))
-            after = self.model.step(params.model, x, share * older + (1 - share) * newer)
+            after = self.model.step(params.model, x, _acting(state, self.most + 1 + j))
             gone = jnp.clip(state.lag - j, 0, 1)
             x = jax.tree.map(lambda a, b, gone=gone: _between(a, b, gone), x, after)
         return x
@@ -75,6 +71,26 @@ class AheadController:
     def greedy(self) -> "AheadController":
         """The controller without exploration, at the same states."""
         return replace(self, controller=self.controller.greedy())
+
+
+def remembered(state: Any, u: Array) -> Any:
+    """The state after u [m] was sent; that of a controller that does not look ahead as it is."""
+    if not isinstance(state, AheadState):
+        return state
+    return state._replace(sent=jnp.concatenate((state.sent[1:], u[None])))
+
+
+def acted(state: Any, u: Array) -> Array:
+    """The action [m] that acts while u [m], which was sent last, is on its way."""
+    return _acting(state, len(state.sent) - 1) if isinstance(state, AheadState) else u
+
+
+def _acting(state: AheadState, now: int) -> Array:
+    """The action [m] that acts while `sent[now]` is on its way, perhaps a later one."""
+    whole = jnp.floor(state.lag)
+    share, at, last = state.lag - whole, now - whole.astype(int), len(state.sent) - 1
+    older, newer = (state.sent[jnp.clip(at - i, 0, last)] for i in (1, 0))
+    return share * older + (1 - share) * newer
 
 
 def _between(a: Array, b: Array, share: Array) -> Array:

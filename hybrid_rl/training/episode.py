@@ -63,7 +63,7 @@ class Episode:
     delay: NotNegative = 0.0  # [s] until an action arrives
     jitter: NotNegative = 0.0  # [s] most that it is later than that; never before another
     loss: Fraction = 0.0  # probability that it never arrives: the last that did goes on acting
-    lag: NotNegative | None = None  # [s] of it that the method knows; None: delay and jitter / 2
+    lag: NotNegative | None = None  # [s] that the method knows; None: delay and jitter / 2
     sensor_noise: NotNegative | tuple[NotNegative, ...] = 0.0  # std of the observation, or [o]
     action_noise: NotNegative = 0.0  # [u] std of what is added to an action when it arrives
     randomise: Ranges | None = None  # of each episode's body; also as {NAME: [low, high]}
@@ -104,11 +104,6 @@ class Episode:
         """The lag [decisions] that the method knows, from an observation until its action acts."""
         lag = self.delay + self.jitter / 2 if self.lag is None else self.lag
         return round(lag / self.spec.dt, 6)
-
-    def acted(self, action: Array, now: EnvState) -> Array:
-        """The action [..., m] that led to `now`: what acted of those sent, if there is a lag."""
-        sent = None if now.clock is None else now.clock.sent
-        return sent.acted if sent is not None and self.known_lag else action
 
     @property
     def world(self) -> Env:

@@ -75,7 +75,7 @@ def test_it_acts_at_the_observation_predicted_for_then(agent, tmp_path):
         inner: tuple = ()
 
         def init(self, spec):
-            return AheadState(jnp.zeros((PENDING, 1)), jnp.zeros(()), ())
+            return AheadState(jnp.zeros((PENDING + 1, 1)), jnp.zeros(()), ())
 
         def act(self, params, state, obs, key):
             return jnp.where(obs[1] % 2 == 0, 0.5 * state.sent[-1], state.lag[None] / 8), state, {}

@@ -29,10 +29,11 @@ def oscillator(delay=0, lag=1.0, dt=DT, steps=STEPS, seed=0, gain=1.0):
     action = rng.uniform(-1, 1, (*x[:, :-1, :1].shape[:2], 1))
     x[:, 0], motor = rng.normal(size=(len(x), 2)), np.zeros(len(x))
     for t in range(steps):
-        asked = gain[:, t] * action[:, t - delay, 0] if t >= delay else np.zeros(len(x))
-        motor = motor + (asked - motor) / lag
         now = x[:, t]
-        for _ in range(20):
+        for i in range(20):
+            sent = int(np.floor(t + i / 20 - delay + 1e-9))
+            asked = gain[:, t] * action[:, sent, 0] if sent >= 0 else np.zeros(len(x))
+            motor = motor + (asked - motor) / lag if i == 0 or delay % 1 else motor
             v = now[:, 1] + dt / 20 * (3 * motor - now[:, 0] - 0.4 * now[:, 1])
             now = np.stack((now[:, 0] + dt / 20 * v, v), axis=1)
         x[:, t + 1] = now
@@ -50,7 +51,7 @@ def evidence(seen, action, reward=None, terminated=False, rest=None):
     flags = (ends, 0 * ends) if terminated else (0 * ends, ends)
     each = (seen[:, :-1], action, reward, *flags, seen[:, 1:])
     made = Transition(*(a.reshape(1, -1, *a.shape[2:]) for a in each))
-    agent = SimpleNamespace(spec=Spec(seen.shape[-1], 1, DT))
+    agent = SimpleNamespace(spec=Spec(seen.shape[-1], 1, DT), random_steps=10**6, num_envs=1)
     folder, run = SimpleNamespace(rows=[], summary={}), SimpleNamespace(agent=agent)
     given = Evidence(folder, run, made)
     vars(given)["at_rest"] = rest
@@ -71,10 +72,16 @@ def test_a_sound_world_gets_no_line():
     assert [check(given) for check in rest] == [None] * 5
 
 
-@pytest.mark.parametrize("delay", [1, 2, 4])
-def test_a_delay_is_counted(delay):
+@pytest.mark.parametrize("delay", [1, 1.4, 2, 4])
+@pytest.mark.parametrize("random", [10**6, 0])
+def test_a_delay_is_measured(delay, random):
+    """By whole decisions, if none is random."""
     given = evidence(*oscillator(delay=delay))
-    assert f"an action acts {delay} decision" in observed.action(given)
+    given.run.agent.random_steps = random
+    words = observed.action(given).split()
+    assert words[:3] + words[4:6] == ["an", "action", "acts", "decisions", "late"]
+    assert float(words[3]) == pytest.approx(delay if random else round(delay), rel=0.1)
+    assert f"episode.lag={float(words[3]) * DT:.3g} " in observed.action(given)
     assert found(given) == {"action"}
 
 

@@ -40,7 +40,7 @@ def test_the_predicted_state_is_that_of_the_model_rolled_by_hand(lag):
     model, most = Exact(ENV), int(np.ceil(lag))
     controller = AheadController(Seeing(), model, lag, most)
     sent = jnp.array([[-0.5], [0.9], [0.2]])[-most:]
-    state = controller.init(ENV.spec)._replace(sent=sent)
+    state = controller.init(ENV.spec)._replace(sent=jnp.concatenate((sent[:1], sent)))
     start = jnp.array([np.cos(2.0), np.sin(2.0), 1.5])
     got = controller.predicted(Params(), state, start)
     acting = {

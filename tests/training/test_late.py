@@ -13,9 +13,11 @@ from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.cartpole import Cartpole
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.settings import build as config
+from hybrid_rl.training.ahead import ahead
 from hybrid_rl.training.episode import Episode
 
 KEY = jax.random.key(0)
+LATE = 2.3 * Pendulum().spec.dt  # [s]
 
 
 def actions(env, decisions: int) -> np.ndarray:
@@ -96,15 +98,21 @@ def test_jitter_and_loss_have_their_statistics():
     assert (got.acted != other.acted).any()
 
 
-@pytest.mark.parametrize("given", [{}, {"lag": 0.0}])
-def test_transitions_hold_what_acted(given):
-    """By hand from what was sent; or what was sent, if the lag is not known."""
+@pytest.mark.parametrize(
+    ("algo", "given"),
+    [("sac", {}), ("sac", {"lag": 0.0}), ("nn_mppi", {}), ("nn_mppi", {"delay": 0.0, "lag": LATE})],
+)
+def test_transitions_hold_what_acted(algo, given):
+    """By hand from what was sent; or what was sent, if the lag is not known.
+
+    A world that is late by itself says nothing: then the controller remembers what was sent.
+    """
     env, T = Pendulum(), 12
-    delay = 2.3 * env.spec.dt
     agent = config.build(
-        config.load([*TINY, "task=pendulum", "algo=sac", "random_steps=100"])
+        config.load([*TINY, "task=pendulum", f"algo={algo}", "random_steps=100"])
     ).agent
-    agent = replace(agent, episode=Episode(env, 9, delay=delay, **given))
+    agent = replace(agent, episode=Episode(env, 9, **({"delay": LATE} | given)))
+    agent = replace(agent, controller=ahead(agent.controller, agent.episode.known_lag))
 
     def one(state, t):
         after, metrics = agent.step(state, t)
@@ -118,7 +126,7 @@ def test_transitions_hold_what_acted(given):
         before[begin + 3 : end + 3] = u[begin:end]
         before[begin : begin + 3] = 0
         acted = 0.3 * before[begin:end] + 0.7 * before[begin + 1 : end + 1]
-        want = u[begin:end] if given else acted
+        want = u[begin:end] if agent.episode.known_lag == 0 else acted
         np.testing.assert_allclose(rows.action[begin:end, 0], want, rtol=1e-5, atol=1e-6)
         paid = jax.vmap(env.reward_of)(rows.obs, rows.action, rows.next_obs)[begin:end]
         if not given:

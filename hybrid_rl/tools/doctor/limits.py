@@ -10,6 +10,7 @@ ENOUGH = 100  # decisions or episodes of a statistic at least
 ERRORS = 4.0  # standard errors by which a difference counts
 CLIPPED = 0.1  # share of decisions at which an entry of the observation stands at its limit
 DISTINCT = 10  # values of an entry up to which it is a flag or a level, and has no limit
+SOONER = 0.1  # lag [decisions] of actions that hardly matters
 LAGS = 5  # actions before a change of which each may have made it
 OLDER = 1.0  # effect of all older actions over that of the newest one
 RELATED = exp(-1)  # correlation of successive observations: one time constant in a decision

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from hybrid_rl import lag
 from hybrid_rl.tools.doctor.evidence import Evidence
 from hybrid_rl.tools.doctor.limits import (
     CLIPPED,
@@ -14,6 +15,7 @@ from hybrid_rl.tools.doctor.limits import (
     OLDER,
     RELATED,
     SLOW,
+    SOONER,
     UNSEEN,
 )
 from hybrid_rl.tools.doctor.regression import (
@@ -116,10 +118,13 @@ def action(run: Evidence) -> str | None:
             "no action changed what is observed afterwards: is it applied, and is the motor on? "
             "render run=DIR shows it"
         )
-    if late and not effect[0] and together[most] > HISTORY:
+    late_by = lag_of(run) or late * (effect[0] == 0 and together[most] > HISTORY)
+    two = effect[int(late_by) : int(late_by) + 2].sum()  # a motor that is slow has a longer tail
+    if late_by > SOONER and two > OLDER * (effect.sum() - two):
+        seconds = late_by * run.run.agent.spec.dt
         return (
-            f"an action acts {late} decision{'s' * (late > 1)} later ({shown}): a delay; shorten "
-            "it, or say it (episode.delay; env.lag of task=robot)"
+            f"an action acts {late_by:.2f} decisions late ({shown}): shorten the delay, or say it: "
+            f"episode.lag={seconds:.3g} (env.lag={seconds:.3g} with task=robot)"
         )
     if effect[1:].sum() > OLDER * effect[0]:
         return (
@@ -127,6 +132,19 @@ def action(run: Evidence) -> str | None:
             "a decision; episode.action_repeat=5, or show the learner the motor's state"
         )
     return None
+
+
+def lag_of(run: Evidence) -> float:
+    """The lag [decisions] of actions by the random decisions; 0: none, or too few of them."""
+    assert run.made is not None
+    agent = run.run.agent
+    k, t = run.at(LAGS)
+    chance = t < agent.random_steps // agent.num_envs
+    k, t = k[chance], t[chance]
+    ages = np.arange(LAGS + 1)
+    sent = run.made.action[k[:, None], t[:, None] - ages]
+    seen, after = (each[k, t][:, run.moving] for each in (run.made.obs, run.made.next_obs))
+    return lag.estimated(seen, after, sent, np.tile(-ages, (len(k), 1)), np.ones(len(k)))
 
 
 def rare(run: Evidence) -> str | None:
