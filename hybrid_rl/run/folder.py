@@ -6,7 +6,6 @@ overrides. A part that occurs several times, such as a model that both the plann
 have, is written once and referenced by a YAML anchor.
 """
 
-import io
 import json
 import shlex
 from collections.abc import Iterator, Mapping, Sequence, Set
@@ -26,7 +25,6 @@ from hybrid_rl.run.files.anchors import as_yaml
 from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.files.lock import lock
 from hybrid_rl.run.files.reading import json_file, yaml_file
-from hybrid_rl.run.logs.records import summary_of
 from hybrid_rl.settings.build import CONF
 from hybrid_rl.settings.values import COUNTS, SECTIONS, check_words
 from hybrid_rl.settings.words import quoted
@@ -155,11 +153,11 @@ def read_trained(folder: Path, key: str) -> DictConfig:
     return config
 
 
-def _check_version(folder: Path, key: str, config: DictConfig) -> None:
+def _check_version(folder: Path, key: str, config: Mapping[str, Any]) -> None:
     """Raise UsageError if another minor version made the run."""
     summary = {}
     with suppress(UsageError):
-        summary = summary_of(folder / "summary.json")
+        summary = json_file(folder / "summary.json")
     version = config.get("version") or summary.get("versions", {}).get("hybrid_rl")
     if str(version).split(".")[:2] != __version__.split(".")[:2]:
         commit = summary.get("git_commit")
@@ -214,18 +212,14 @@ def parse_config(folder: Path, key: str = "runs") -> DictConfig:
     path = folder / "config.yaml"
     if not path.exists():
         raise UsageError(f"{key}={'' if folder == Path() else folder}: {_instead(folder, key)}")
-    config = yaml_file(path, lambda text: OmegaConf.load(io.StringIO(text)))
-    if not isinstance(config, DictConfig) or not config:
-        raise UsageError(f"{path}: is empty, or no group of keys")
+    values = yaml_file(path)
     try:
-        values: Any = OmegaConf.to_container(config)
         parts.check({**values, "recipe": str(values.get("recipe"))}, folder)
     except ValueError as error:
-        _check_version(folder, key, config)  # another one may have had such a part
+        _check_version(folder, key, values)  # another one may have had such a part
         raise UsageError(f"{path}: {error}") from error
     defaults: Any = OmegaConf.load(CONF / "train.yaml")
-    config.compile_cache = defaults.compile_cache
-    return config
+    return OmegaConf.create(values | {"compile_cache": defaults.compile_cache})
 
 
 def _instead(folder: Path, key: str) -> str:

@@ -15,10 +15,11 @@ from hybrid_rl.run import folder, start
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.files import integrity
 from hybrid_rl.run.files.lock import lock
+from hybrid_rl.run.files.reading import json_file
 from hybrid_rl.run.job import Job, Output, written
 from hybrid_rl.run.logs import loggers
 from hybrid_rl.run.logs.progress import Progress
-from hybrid_rl.run.logs.records import changes, summary_of
+from hybrid_rl.run.logs.records import changes
 from hybrid_rl.run.machine import memory
 from hybrid_rl.run.machine.jax_settings import prepare, refuse_x64
 from hybrid_rl.run.members import Member, axis_of, joined
@@ -211,7 +212,7 @@ def _same(old: DictConfig, config: DictConfig) -> bool:
 def _done(config: DictConfig, run_dir: Path) -> dict[str, Any] | None:
     """summary.json of a run that has reached its end and has a checkpoint there; None else."""
     try:
-        summary = summary_of(run_dir / "summary.json") | {"run_dir": str(run_dir)}
+        summary = json_file(run_dir / "summary.json") | {"run_dir": str(run_dir)}
         done = summary["finished"] and summary["total_steps"] >= config.total_steps
         newest = run_dir / "checkpoints" / str(summary["total_steps"])
     except (OSError, ValueError, KeyError, TypeError):

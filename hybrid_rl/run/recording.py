@@ -16,7 +16,6 @@ from hybrid_rl.data.trained import save
 from hybrid_rl.errors import UsageError
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run.files.reading import json_file
-from hybrid_rl.run.logs.records import summary_of
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.run.saved import OBJECTIVES, Trained, load
 from hybrid_rl.settings import build as configuration
@@ -143,7 +142,7 @@ def _description(folder: Path, trained: Trained, command: str, seed: int) -> dic
         if node is not None:
             parts[name] = _anywhere(OmegaConf.to_container(node))
     file = folder / "summary.json"
-    summary = summary_of(file) if file.exists() else {}
+    summary = json_file(file) if file.exists() else {}
     return {
         **parts,
         **{"algo": config.algo, "seed": seed, "step": trained.step, "command": command},

@@ -26,7 +26,6 @@ from hybrid_rl.errors import CheckpointError
 from hybrid_rl.files.atomic import own_folder, sync
 from hybrid_rl.run.checkpoints import leaves
 from hybrid_rl.run.files import integrity
-from hybrid_rl.run.files.reading import from_json
 from hybrid_rl.types import PyTree
 
 KEEP = 2  # complete checkpoints
@@ -54,7 +53,7 @@ def meta(folder: Path) -> dict[str, Any]:
     """meta.json of the newest readable checkpoint; {} if there is none."""
     for _, path in sorted(_finished(folder).items(), reverse=True):
         with contextlib.suppress(OSError, ValueError):
-            return from_json((path / "meta.json").read_text(encoding="utf-8"))
+            return json.loads((path / "meta.json").read_text(encoding="utf-8"))
     return {}
 
 

@@ -6,6 +6,7 @@ their data, arrays without elements as their shape alone.
 
 import contextlib
 import io
+import json
 import logging
 import sys
 import time
@@ -18,7 +19,6 @@ import jax
 import numpy as np
 
 from hybrid_rl.errors import MisfitError
-from hybrid_rl.run.files.reading import from_json
 from hybrid_rl.types import PyTree
 
 AFTERMATH = 0.5  # [s] in which TensorStore's threads print tracebacks after a failed write
@@ -95,8 +95,8 @@ def read(path: Path, like: PyTree) -> tuple[PyTree, dict]:
     """The leaves of `like` in a sound checkpoint, and its meta."""
     import orbax.checkpoint as ocp  # 1 s
 
-    meta = from_json((path / "meta.json").read_text(encoding="utf-8"))
-    kinds = from_json((path / "leaves.json").read_text(encoding="utf-8"))
+    meta = json.loads((path / "meta.json").read_text(encoding="utf-8"))
+    kinds = json.loads((path / "leaves.json").read_text(encoding="utf-8"))
     wanted = dict(_named(like))
     _match(path, kinds, wanted)
     filled = {name: 0 for name in wanted if 0 not in kinds[name]["shape"]}

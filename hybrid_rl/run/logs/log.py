@@ -15,9 +15,9 @@ import numpy as np
 from hybrid_rl.errors import CheckpointError
 from hybrid_rl.files.atomic import open_own
 from hybrid_rl.run.files.integrity import write_text
-from hybrid_rl.run.files.reading import lines
+from hybrid_rl.run.files.reading import open_file
 from hybrid_rl.run.logs.loggers import Begun, WandB
-from hybrid_rl.run.logs.records import Row, json_value, row_of
+from hybrid_rl.run.logs.records import Row, json_value
 
 
 class RunLog:
@@ -92,14 +92,14 @@ class RunLog:
         offset: [bytes] that `flush` returned then. Returns one line for each difference from the
         state at the checkpoint.
         """
-        whole = [line for line in lines(self.path, offset) if line.endswith(b"\n")]
-        sound = all(row_of(line) is not None for line in whole)
-        self._file.truncate(sum(map(len, whole)))
+        with open_file(self.path) as file:
+            whole = file.read(offset).rpartition(b"\n")
+        self._file.truncate(len(whole[0] + whole[1]))
         self._file.seek(0, os.SEEK_END)
         self._begun = self._begun._replace(step=step)
-        if self._file.tell() == offset and sound:
+        if self._file.tell() == offset:
             return []
-        return [f"{self.path} has changed: rows before step {step} are missing or edited"]
+        return [f"{self.path} has changed: rows before step {step} are missing"]
 
     def summary(self, fields: dict[str, Any]) -> Path:
         """Replace summary.json; NaN and infinity become null."""
