@@ -20,8 +20,7 @@ from hybrid_rl.outside.row_log import RowLog
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.files.lock import lock
 from hybrid_rl.run.logs.log import RunLog
-from hybrid_rl.run.logs.loggers import Begun, WandB
-from hybrid_rl.run.logs.tensorboard import TensorBoard
+from hybrid_rl.run.logs.loggers import Begun, TensorBoard, WandB
 from hybrid_rl.types import Spec
 
 PACKAGE = Path(__file__).resolve().parents[1] / "hybrid_rl"
@@ -119,7 +118,7 @@ WRITE = {  # what would be written, by the file or the folder that is a link
     "robot/stop": lambda run: open_own(run / "robot" / "stop").close(),
     "robot": lambda run: own_folder(run / "robot"),
     "lock": lambda run: lock(run, "run_dir").__enter__(),
-    "metrics.jsonl": lambda run: RunLog(run, [0]).__enter__(),
+    "metrics.jsonl": lambda run: RunLog(run, [0]).flush(),
     "tensorboard": tensorboard,
     "tensorboard/seed_0": tensorboard,
     "wandb": lambda run: WandB(Begun(run, [0], {})).id_of(0),

@@ -6,12 +6,12 @@ overrides. A part that occurs several times, such as a model that both the plann
 have, is written once and referenced by a YAML anchor.
 """
 
+import itertools
 import json
 import shlex
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from datetime import datetime
-from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -32,72 +32,36 @@ from hybrid_rl.version import __version__
 
 FIRST = "0.2"  # version that writes its number to config.yaml
 SWEEP = "sweep.json"  # in the folder of runs that one program trains (hybrid_rl.run.members)
-NO_CHECKPOINT = "holds a run without a checkpoint; delete it, or choose another"
 
 
 @contextmanager
-def claim_folders(
-    configs: Sequence[DictConfig], columns: Mapping[str, Sequence[float]]
-) -> Iterator[list[Path]]:
+def claim_folders(configs: Sequence[DictConfig]) -> Iterator[list[Path]]:
     """New run folders for `configs`, locked by this process until the end of the block.
 
-    One is run_dir; several are 0, 1, ... in it, beside sweep.json with `columns`. If nothing was
-    trained in the block, what it wrote is deleted again, and so are folders that it made.
+    One is run_dir; several are 0, 1, ... in it. What is empty afterwards is deleted again.
     """
     given, several = configs[0].run_dir, len(configs) > 1
     parent = new_folder(configs[0]) if given is None else Path(str(given))
     folders = [parent / str(number) for number in range(len(configs))] if several else [parent]
-    line = f"run_dir={parent}: holds a run already; choose another, or resume={parent}"
     with ExitStack() as stack:
-        if given is None or not parent.exists():
-            stack.callback(_remove_empty, parent)
-        if several:
-            if (parent / SWEEP).exists() or (parent / "config.yaml").exists():
-                raise UsageError(line)
-            stack.callback(_forget, parent, folders, _names(parent))
-        for config, folder in zip(configs if several else (), folders, strict=several):
-            stack.callback(_remove_empty, folder)
-            with open_dict(config):
-                config.run_dir = str(folder)
-        for folder in folders:
+        for folder in dict.fromkeys([parent, *folders]):
+            if given is None or not folder.exists():
+                stack.callback(_remove_empty, folder)
+        for folder, config in zip(folders, configs, strict=True):
+            if several:
+                with open_dict(config):
+                    config.run_dir = str(folder)
             stack.enter_context(lock(folder, "run_dir"))
-            if checkpoint.steps(folder / "checkpoints"):
-                raise UsageError(line)
-            if (folder / "config.yaml").exists() and not rowless(folder):
-                raise UsageError(f"run_dir={folder}: {NO_CHECKPOINT}")
-            stack.callback(_forget, folder, [folder], _names(folder))
-        if several:
-            write_text(parent / SWEEP, json.dumps(columns, indent=1) + "\n")
+        for folder, name in itertools.product([parent, *folders], ("config.yaml", SWEEP)):
+            if (folder / name).exists():
+                line = f"holds a run already; choose another, or resume={parent}"
+                raise UsageError(f"run_dir={parent}: {line}")
         yield folders
-
-
-def _names(folder: Path) -> set[str]:
-    """The names of what a folder holds."""
-    return {path.name for path in folder.iterdir()} if folder.exists() else set()
-
-
-def _forget(folder: Path, runs: Sequence[Path], before: Set[str]) -> None:
-    """Delete what a start has written to a folder that held `before`, unless it trained a run."""
-    if not any(map(_trained, runs)):
-        for name in {"config.yaml", "metrics.jsonl", SWEEP} - before:
-            (folder / name).unlink(missing_ok=True)
 
 
 def _remove_empty(folder: Path) -> None:
     with suppress(OSError):  # it holds something
         folder.rmdir()
-
-
-def _trained(folder: Path) -> bool:
-    """True if a run has written a row or a checkpoint there."""
-    rows = folder / "metrics.jsonl"
-    written = rows.exists() and rows.stat().st_size > 0
-    return written or bool(checkpoint.steps(folder / "checkpoints"))
-
-
-def rowless(folder: Path) -> bool:
-    """True if a run began there and wrote nothing, as when it was stopped while it compiled."""
-    return (folder / "metrics.jsonl").exists() and not _trained(folder)
 
 
 def new_folder(config: DictConfig, suffix: str = "") -> Path:
@@ -117,6 +81,12 @@ def new_folder(config: DictConfig, suffix: str = "") -> Path:
 def write(folder: Path, config: DictConfig) -> None:
     """Write config.yaml of a run with the resolved configuration `config`."""
     write_text(folder / "config.yaml", described(config))
+
+
+def write_sweep(folder: Path, values: Sequence[Mapping[str, float]]) -> None:
+    """Write sweep.json of the runs 0, 1, ... in `folder`; values: key -> value, of each."""
+    columns = {key: [own[key] for own in values] for key in values[0]}
+    write_text(folder / SWEEP, json.dumps(columns, indent=1) + "\n")
 
 
 def described(config: DictConfig) -> str:
@@ -185,10 +155,7 @@ def members(folder: Path) -> dict[Path, dict[str, float]]:
     if not (folder / SWEEP).exists():
         return {}
     columns = json_file(folder / SWEEP)
-    lists = [column if isinstance(column, list) else [] for column in columns.values()]
-    if any(type(x) not in (int, float) for x in chain(*lists)) or len(set(map(len, lists))) != 1:
-        raise UsageError(f"{folder / SWEEP}: is not what training writes")
-    rows = (dict(zip(columns, row, strict=True)) for row in zip(*lists, strict=True))
+    rows = (dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True))
     return {folder / str(number): row for number, row in enumerate(rows)}
 
 

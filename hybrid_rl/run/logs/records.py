@@ -2,9 +2,10 @@
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 from types import NoneType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,6 +13,15 @@ Row = dict[str, Any]
 COORDINATES = ("step", "seed", "wall_s")  # of a row; every other name but WORD is a metric
 WORD = "diverged"  # of a row: the only value that is no number
 Number = int | float | NoneType
+
+
+class Begun(NamedTuple):
+    """A run whose rows are to come."""
+
+    folder: Path
+    seeds: Sequence[int]
+    config: dict[str, Any]
+    step: int | None = None  # from which it is resumed
 
 
 def row_of(line: bytes) -> Row | None:

@@ -15,7 +15,7 @@ from typing import Any
 import jax
 import numpy as np
 
-from hybrid_rl import CheckpointError, Trained, UsageError, load
+from hybrid_rl import CheckpointError, Trained, load
 from hybrid_rl.analysis.held_out import RandomActions
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.controllers.constant import ConstantController
@@ -181,8 +181,6 @@ def of_each(check: Callable[[Evidence], str | None]) -> Callable[[Evidence], str
 def read(path: Path) -> Evidence:
     """The run in `path`."""
     config = run_folder.read(path, "run")
-    if run_folder.rowless(path):
-        raise UsageError(f"run={path}: {path / 'metrics.jsonl'}: no row of metrics yet")
     with run_folder.blame_config(path):
         prepare(config)
         run = build_run(config, "memory")
