@@ -120,7 +120,7 @@ def judged(folder: Path, **keys: object) -> str:
             "numpy.save",
         ),
         *("antigravity.webbrowser", "yaml.unsafe_load", "__main__.x", "site.main", "pytest.main"),
-        "hybrid_rl.run.files.integrity.write_text",
+        "hybrid_rl.files.atomic.write_text",
         "hybrid_rl.analysis.results.RunFolder",
         "hybrid_rl.settings.build.Path",
         "hybrid_rl.settings.build.Run",

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run.files.reading import json_file, open_file, yaml_file
+from hybrid_rl.files.reading import json_file, open_file, yaml_file
 from hybrid_rl.run.logs.records import COORDINATES, WORD, arrays, flatten_keys, row_of
 from hybrid_rl.settings.complete import nearest
 from hybrid_rl.settings.values import PAID, SECTIONS

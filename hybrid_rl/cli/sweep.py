@@ -23,9 +23,9 @@ from omegaconf import DictConfig, OmegaConf
 from hybrid_rl.cli import command
 from hybrid_rl.cli.submitted import Result, launch, require_slurm
 from hybrid_rl.errors import UsageError
+from hybrid_rl.files.atomic import write_text
 from hybrid_rl.run import members as program
 from hybrid_rl.run.checkpoints import checkpoint
-from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.folder import members, new_folder
 from hybrid_rl.run.logs.records import result_line
 from hybrid_rl.run.machine.jax_settings import prepare

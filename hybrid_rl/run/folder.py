@@ -15,16 +15,16 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+import yaml
 from omegaconf import DictConfig, OmegaConf, open_dict
 from omegaconf.errors import ConfigAttributeError, ConfigKeyError, OmegaConfBaseException
 
 from hybrid_rl.errors import MisfitError, PartError, UsageError, printable
 from hybrid_rl.files import targets as parts
+from hybrid_rl.files.atomic import write_text
+from hybrid_rl.files.lock import lock
+from hybrid_rl.files.reading import json_file, yaml_file
 from hybrid_rl.run.checkpoints import checkpoint
-from hybrid_rl.run.files.anchors import as_yaml
-from hybrid_rl.run.files.integrity import write_text
-from hybrid_rl.run.files.lock import lock
-from hybrid_rl.run.files.reading import json_file, yaml_file
 from hybrid_rl.settings.build import CONF
 from hybrid_rl.settings.values import COUNTS, SECTIONS, check_words
 from hybrid_rl.settings.words import quoted
@@ -96,6 +96,40 @@ def described(config: DictConfig) -> str:
     values: Any = {key: config[key] for key in order if key not in ("expert", "version")}
     made: Any = OmegaConf.create({"version": __version__} | values | {"resume": None})
     return as_yaml(made)
+
+
+def as_yaml(config: DictConfig) -> str:
+    """`config` as YAML; equal parts are one object, which PyYAML writes once."""
+    first: dict[str, Any] = {}  # a part as text -> its first occurrence
+
+    def share(node: Any) -> Any:
+        if not isinstance(node, dict):
+            return node
+        names = sorted(node, key=lambda name: name != "_target_")  # it comes first
+        node = {name: share(node[name]) for name in names}
+        return first.setdefault(str(node), node) if "_target_" in node else node
+
+    values = share(OmegaConf.to_container(config))
+    return yaml.dump(values, Dumper=_Dumper, sort_keys=False, allow_unicode=True)
+
+
+class _Dumper(yaml.SafeDumper):
+    """Lists on a line, and what reads as a number in YAML 1.2, such as 1e-3, in quotes."""
+
+    def sequence(self, data: list[Any]) -> yaml.Node:
+        flow = not any(isinstance(value, (dict, list)) for value in data)
+        return self.represent_sequence("tag:yaml.org,2002:seq", data, flow_style=flow)
+
+    def word(self, data: str) -> yaml.Node:
+        try:
+            float(data)
+        except ValueError:
+            return self.represent_str(data)
+        return self.represent_scalar("tag:yaml.org,2002:str", data, style="'")
+
+
+_Dumper.add_representer(list, _Dumper.sequence)
+_Dumper.add_representer(str, _Dumper.word)
 
 
 def read(folder: Path, key: str) -> DictConfig:

@@ -11,12 +11,11 @@ from omegaconf import DictConfig
 
 from hybrid_rl.errors import FAULTS, DivergenceError, UsageError, install
 from hybrid_rl.files.atomic import refuse_link
+from hybrid_rl.files.lock import lock
+from hybrid_rl.files.reading import json_file
 from hybrid_rl.networks import precision
 from hybrid_rl.run import folder, start
-from hybrid_rl.run.checkpoints import checkpoint
-from hybrid_rl.run.files import integrity
-from hybrid_rl.run.files.lock import lock
-from hybrid_rl.run.files.reading import json_file
+from hybrid_rl.run.checkpoints import checkpoint, manifest
 from hybrid_rl.run.job import Job, Output, written
 from hybrid_rl.run.logs.progress import Progress
 from hybrid_rl.run.logs.records import changes
@@ -91,6 +90,9 @@ def _resume(
     parent = Path(str(wanted[0].config.resume))
     swept = folder.members(parent) or {parent: {}}
     folders, values = [*map(refuse_link, swept)], [*swept.values()]
+    if len(wanted) not in (1, len(folders)):
+        raise UsageError(f"sweep: resume={parent} has {len(folders)} runs; leave sweep.KEY out")
+    given = {key.removeprefix("sweep."): value for key, value in given.items()}
     typed = zip(folders, cycle(wanted), strict=False)  # one, or one for each
     configs = [_settings(member.config, run_dir, given) for run_dir, member in typed]
     done = [_done(config, run_dir) for config, run_dir in zip(configs, folders, strict=True)]
@@ -177,11 +179,11 @@ def _settings(config: DictConfig, run_dir: Path, given: Mapping[str, str]) -> Di
     config: what the user's command composes, which may be that of the run again.
     """
     old = folder.read_trained(run_dir, "resume")
-    typed = [key.removeprefix("sweep.") for key in given if key not in FREE]
+    typed = [key for key in given if key not in FREE]
     if typed and (changed := _changes(written(old), written(config))):
         differ = [key for key in typed if any(line.startswith(f"{key} ") for line in changed)]
         key = (differ or typed)[0]
-        raise UsageError(f"{key}={given.get(key, '')}: {ONLY}; resume={run_dir} has its own")
+        raise UsageError(f"{key}={given[key]}: {ONLY}; resume={run_dir} has its own")
     if "total_steps" in given:
         steps = whole("total_steps", config.total_steps)
         if steps < whole("total_steps", old.total_steps):
@@ -219,7 +221,7 @@ def _done(config: DictConfig, run_dir: Path) -> dict[str, Any] | None:
         newest = run_dir / "checkpoints" / str(summary["total_steps"])
     except (OSError, ValueError, KeyError, TypeError):
         return None
-    return summary if done and integrity.verify(newest) is None else None
+    return summary if done and manifest.verify(newest) is None else None
 
 
 def _progress(run: Run, visible: bool) -> Progress:

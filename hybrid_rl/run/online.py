@@ -27,12 +27,12 @@ from omegaconf import DictConfig
 
 from hybrid_rl.envs.adapters.robot import Outside
 from hybrid_rl.errors import DivergenceError, UsageError
+from hybrid_rl.files.lock import lock
 from hybrid_rl.outside.acting import Exploring, numbers
 from hybrid_rl.outside.learner import RowLearner, RowLoop
 from hybrid_rl.outside.row_log import row_type
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.checkpoints.store import Record, Shelf
-from hybrid_rl.run.files.lock import lock
 from hybrid_rl.run.job import written
 from hybrid_rl.run.launch import fits, refuse_edits
 from hybrid_rl.run.logs.rows import Gathered

@@ -143,7 +143,7 @@ def test_the_same_command_continues_runs_that_share_a_program(tmp_path, capfd):
     assert capfd.readouterr().out.count("1 of 1 jobs done") == 2
     assert (tmp_path / "both/1/metrics.jsonl").read_text() == before
     assert call_train(*line, f"{key}=[0.9,0.7]") == 2
-    assert "resume=both has policy_learner.discount=0.9, policy_" in capfd.readouterr().err
+    assert "policy_learner.discount=[0.9,0.7]: with resume only" in capfd.readouterr().err
 
 
 def test_a_folder_that_cannot_be_made_is_one_line(tmp_path, capfd):

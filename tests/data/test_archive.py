@@ -65,7 +65,7 @@ def test_arrays_that_no_policy_can_have_are_refused(tmp_path, policy):
             trained.read(str(tmp_path / "a.npz"))
 
 
-EVIL = {"_target_": "hybrid_rl.run.files.integrity.write_text", "path": "ran"}
+EVIL = {"_target_": "hybrid_rl.files.atomic.write_text", "path": "ran"}
 ABOUT: tuple[dict[str, Any], ...] = (
     {"env": EVIL},
     {"policy": {"_target_": "a.B", "x": [[EVIL]]}},

@@ -14,9 +14,8 @@ from hybrid_rl import evaluate, export
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.run import session
-from hybrid_rl.run.checkpoints import checkpoint
+from hybrid_rl.run.checkpoints import checkpoint, manifest
 from hybrid_rl.run.evaluations import Evaluations
-from hybrid_rl.run.files import integrity
 from hybrid_rl.run.logs import rows
 from hybrid_rl.run.machine import memory
 
@@ -52,7 +51,7 @@ def test_a_damaged_checkpoint_is_passed_over(copied, capfd):
     assert "checkpoint 600 is skipped" in printed.out
     assert "continuing from step 500" in printed.out
     assert printed.err == ""
-    assert integrity.verify(copied / "checkpoints" / "600") is None
+    assert manifest.verify(copied / "checkpoints" / "600") is None
 
 
 def test_without_a_sound_checkpoint_nothing_is_done(copied, capfd):

@@ -8,9 +8,9 @@ from tiny import TINY, call, call_train, contents, only_line, run
 from hybrid_rl import evaluate
 from hybrid_rl.cli import command
 from hybrid_rl.errors import UsageError, WorldError
+from hybrid_rl.files.atomic import write_text
+from hybrid_rl.files.lock import lock
 from hybrid_rl.run import folder as run_folder
-from hybrid_rl.run.files import integrity
-from hybrid_rl.run.files.lock import lock
 from hybrid_rl.settings.build import load
 from hybrid_rl.training.loop import Loop
 
@@ -113,7 +113,7 @@ def test_links_in_a_run_folder_lead_to_nothing_that_is_written(tmp_path):
     refused = pytest.raises(UsageError, match="lock: is a link")
     with refused, lock(tmp_path, "run_dir"):
         pass
-    integrity.write_text(tmp_path / "config.yaml", "new")
+    write_text(tmp_path / "config.yaml", "new")
     assert (tmp_path / "config.yaml").read_text() == "new"
     assert precious.read_text() == "mine"
 

@@ -12,7 +12,7 @@ import pytest
 from tiny import TINY, call_train, contents, only_line
 
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run.files.lock import lock
+from hybrid_rl.files.lock import lock
 
 pytestmark = pytest.mark.turns(3)
 
@@ -20,7 +20,7 @@ pytestmark = pytest.mark.turns(3)
 HOLD = """
 import sys, time
 from pathlib import Path
-from hybrid_rl.run.files.lock import lock
+from hybrid_rl.files.lock import lock
 with lock(Path(sys.argv[1]), "run_dir"):
     print("held", flush=True)
     time.sleep(60)
@@ -63,7 +63,7 @@ def test_one_at_a_time_has_a_folder(tmp_path):
     code = (
         "import sys\n"
         "from pathlib import Path\n"
-        "from hybrid_rl.run.files.lock import lock\n"
+        "from hybrid_rl.files.lock import lock\n"
         "from hybrid_rl.errors import UsageError\n"
         "folder, done = Path(sys.argv[1]), 0\n"
         "while done < 200:\n"

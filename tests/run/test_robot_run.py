@@ -19,9 +19,9 @@ from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.adapters.stand_in import ACTION, MOVED, RESET, Cartpole
 from hybrid_rl.envs.adapters.unstepped import ALONE
 from hybrid_rl.errors import UsageError, WorldError
+from hybrid_rl.files.lock import lock
 from hybrid_rl.outside.robot_process import RobotProcess
 from hybrid_rl.outside.row_log import RowLog
-from hybrid_rl.run.files.lock import lock
 from hybrid_rl.settings import build as config
 from hybrid_rl.tools.doctor.__main__ import CHECKS, examine
 from hybrid_rl.tools.stand_in import Physics

@@ -13,9 +13,8 @@ from tiny import TINY, call_train, rows_of, run, summary_of
 
 from hybrid_rl.errors import DivergenceError
 from hybrid_rl.run import schedule, session
-from hybrid_rl.run.checkpoints import checkpoint
+from hybrid_rl.run.checkpoints import checkpoint, manifest
 from hybrid_rl.run.evaluations import Evaluations
-from hybrid_rl.run.files import integrity
 from hybrid_rl.run.logs.rows import Gathered
 from hybrid_rl.run.schedule import Pace, Schedule, Speed
 from hybrid_rl.run.session import Session
@@ -219,7 +218,7 @@ def test_an_evaluation_that_is_not_finite_ends_the_learner(tmp_path):
         "resume it, or begin again with a lower learning rate"
     )
     assert checkpoint.steps(folder / "checkpoints") == [100, 200]
-    assert integrity.verify(folder / "checkpoints" / "200") is None
+    assert manifest.verify(folder / "checkpoints" / "200") is None
     assert rows_of(folder)[-1]["diverged"] == "eval/return"
     summary = summary_of(folder)
     assert (summary["finished"], summary["diverged"][0]["step"]) == (False, 300)

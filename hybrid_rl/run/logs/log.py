@@ -13,9 +13,8 @@ from typing import Any, Self
 import numpy as np
 
 from hybrid_rl.errors import CheckpointError
-from hybrid_rl.files.atomic import open_own
-from hybrid_rl.run.files.integrity import write_text
-from hybrid_rl.run.files.reading import open_file
+from hybrid_rl.files.atomic import open_own, write_text
+from hybrid_rl.files.reading import open_file
 from hybrid_rl.run.logs.records import Begun, Row, json_value
 
 

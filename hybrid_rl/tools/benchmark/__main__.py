@@ -28,8 +28,8 @@ from time import perf_counter
 from typing import Any
 
 from hybrid_rl import UsageError, arguments, command
+from hybrid_rl.files.atomic import write_text
 from hybrid_rl.networks.precision import PRECISIONS
-from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.settings import build as config
 from hybrid_rl.settings import groups as conf_files

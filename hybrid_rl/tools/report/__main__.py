@@ -31,9 +31,9 @@ import numpy as np
 from hybrid_rl import Curve, UsageError, __version__, arguments, command
 from hybrid_rl.analysis.curves import area, plural, spread
 from hybrid_rl.analysis.results import RunFolder, differences, find
-from hybrid_rl.run.files.integrity import write_text
-from hybrid_rl.run.files.reading import json_file
-from hybrid_rl.run.files.reading import text as text_of
+from hybrid_rl.files.atomic import write_text
+from hybrid_rl.files.reading import json_file
+from hybrid_rl.files.reading import text as text_of
 from hybrid_rl.run.logs.progress import clock
 from hybrid_rl.tools.report import panels
 from hybrid_rl.tools.report.entry import entry

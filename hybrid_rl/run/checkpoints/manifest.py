@@ -1,6 +1,6 @@
 """Complete folders of files: a manifest, fsync, and rename.
 
-`write_manifest` lists every file below a folder with its size and SHA-256 in MANIFEST and
+`write` lists every file below a folder with its size and SHA-256 in MANIFEST and
 forces all of it to the disk. `verify` compares the folder with that list and names the
 first difference. A folder without a manifest was never completed.
 """
@@ -9,12 +9,12 @@ import hashlib
 import json
 from pathlib import Path
 
-from hybrid_rl.files.atomic import replacing, sync
+from hybrid_rl.files.atomic import sync
 
 MANIFEST = "manifest.json"
 
 
-def write_manifest(folder: Path) -> None:
+def write(folder: Path) -> None:
     """List all files below `folder`, then force files and folders to the disk."""
     files = sorted(path for path in folder.rglob("*") if path.is_file())
     listed = {
@@ -55,9 +55,3 @@ def digest(path: Path) -> str:
     """SHA-256 of a file, in hexadecimal."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
-
-
-def write_text(path: Path, text: str) -> None:
-    """Replace the text of a file; a reader sees the old or the new text, never a part."""
-    with replacing(path) as draft, draft.open("x", encoding="utf-8") as file:
-        file.write(text)
