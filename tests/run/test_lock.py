@@ -95,13 +95,3 @@ def test_a_disk_without_locks_or_that_fails_is_one_line(tmp_path, monkeypatch, c
     line = rf"run_dir={tmp_path}: cannot be written to \(Input/output error\)"
     with pytest.raises(UsageError, match=line), lock(tmp_path, "run_dir"):
         pass
-
-
-def test_the_lock_of_a_folder_with_the_name_of_a_moved_one_stays(tmp_path):
-    folder = tmp_path / "run"
-    folder.mkdir()
-    with lock(folder, "run_dir"):
-        folder.rename(tmp_path / "moved")
-        folder.mkdir()
-        (folder / "lock").write_text("of another process")
-    assert (folder / "lock").read_text() == "of another process"
