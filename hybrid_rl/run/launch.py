@@ -162,15 +162,10 @@ def _run(job: Job, handled: Handler, output: Output, first: Start | None = None)
 def _notes(job: Job) -> list[str]:
     """Lines about a program that begins."""
     run, config = job.runs[0], job.runs[0].config
-    notes = [
-        f"{config.task} {config.algo}{name and ' '}{name}: run folder {run_dir}"
-        for run_dir, name in zip(job.folders, job.axis.names, strict=True)
-    ]
-    notes += [fits(job.runs), *run.notes]
-    if config.physics != "auto" and configuration.physics(config) is None:
-        line = f"has no effect; task={config.task} is not simulated by hybrid_rl.envs.mujoco"
-        notes.append(f"physics={config.physics}: {line}")
-    return notes
+    named = zip(job.folders, job.axis.names, strict=True)
+    start = f"{config.task} {config.algo}"
+    folders = [f"{start}{name and ' '}{name}: run folder {run_dir}" for run_dir, name in named]
+    return [*folders, fits(job.runs), *run.notes]
 
 
 def _settings(config: DictConfig, run_dir: Path, given: Mapping[str, str]) -> DictConfig:
