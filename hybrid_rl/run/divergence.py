@@ -66,9 +66,9 @@ def unsound(learners: Any, step: int) -> dict[int, tuple[int, str]]:
     return failures
 
 
-def note(end: End, left: int) -> str:
-    """A line for a learner that ended while `left` others continue."""
-    return f"{_words(end)}; it ends here, {_others(left)} continue{'s' if left == 1 else ''}"
+def note(end: End) -> str:
+    """A line for a learner that ended while others continue."""
+    return f"{_words(end)}; it ends here, the others continue"
 
 
 def line(ends: Sequence[End], left: int, checkpoint: int | None) -> str:
@@ -78,15 +78,11 @@ def line(ends: Sequence[End], left: int, checkpoint: int | None) -> str:
     """
     words = "; ".join(map(_words, ends))
     if left:
-        return f"{words}; {_others(left)} went on to the end"
+        return f"{words}; the others went on to the end"
     if checkpoint is None:
         return f"{words}; there is no checkpoint"
     mend = "fix what fails and resume it, or begin again with a lower learning rate"
     return f"{words}; checkpoint {checkpoint} is intact: {mend}"
-
-
-def _others(count: int) -> str:
-    return "the other learner" if count == 1 else f"the other {count} learners"
 
 
 def _words(end: End) -> str:

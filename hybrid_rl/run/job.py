@@ -117,7 +117,7 @@ def _summary(config: DictConfig, session: Session, run_dir: Path, share: slice) 
         "total_steps": session.step,
         "finished": session.finished,
         "final_return": session.final_returns()[share],
-        "final_eval": session.final_evaluations()[share],
+        "final_eval": session.record.final_eval[share],
         "diverged": [end for s, end in ends.items() if share.start <= s < share.stop],
         "wall_s": session.wall_s,
         "compile_s": session.loop.compile_s,

@@ -210,13 +210,12 @@ def _changes(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
 
 def _done(config: DictConfig, run_dir: Path) -> dict[str, Any] | None:
     """summary.json of a run that has reached its end and has a checkpoint there; None else."""
-    try:
-        summary = json_file(run_dir / "summary.json") | {"run_dir": str(run_dir)}
-        done = summary["finished"] and summary["total_steps"] >= config.total_steps
-        newest = run_dir / "checkpoints" / str(summary["total_steps"])
-    except (OSError, ValueError, KeyError, TypeError):
+    file = run_dir / "summary.json"
+    summary = json_file(file) if file.exists() else {"finished": False}
+    if not summary["finished"] or summary["total_steps"] < config.total_steps:
         return None
-    return summary if done and manifest.verify(newest) is None else None
+    newest = run_dir / "checkpoints" / str(summary["total_steps"])
+    return summary | {"run_dir": str(run_dir)} if manifest.verify(newest) is None else None
 
 
 def _progress(run: Run, visible: bool) -> Progress:

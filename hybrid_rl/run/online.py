@@ -224,7 +224,7 @@ class OnlineLearner:
             self._advance()
         with _writable(folder) as path, self._lock:
             shelf = Shelf(self._loop, [path / "checkpoints"], [written(self.config)])
-            shelf.save(learner.state, Gathered(), Record([[]], [None], step=learner.read))
+            shelf.save(learner.state, Gathered(), Record([[]], [None], step=learner.read), {})
             run_folder.write(path, self.config)
 
     @classmethod

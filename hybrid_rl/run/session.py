@@ -9,7 +9,6 @@ uninterrupted one.
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from time import monotonic, perf_counter
-from types import MappingProxyType
 from typing import Any
 
 import jax
@@ -30,7 +29,6 @@ from hybrid_rl.run.schedule import Pace, Schedule, Speed
 from hybrid_rl.run.start import Start
 from hybrid_rl.training.loop import Loop
 
-NOTHING: Mapping[str, float] = MappingProxyType({})
 RETURNS = [f"{prefix}return" for prefix in EVALUATED.values()]  # the first of them is the result
 
 
@@ -157,7 +155,7 @@ class Session:
         self._record(metrics, start)
         due = plan.due(plan.eval_every, self.step, worlds)
         self.record.unevaluated = bool(plan.eval_modes) and due
-        self._show(say=False if self.record.unevaluated else None)
+        self._show({}, say=False if self.record.unevaluated else None)
 
     def _record(self, metrics: rows.Metrics, start: int) -> None:
         """Write the rows that follow from the rounds after `start`."""
@@ -216,9 +214,10 @@ class Session:
     def _end(self, failures: Mapping[int, tuple[int, str]]) -> list[Row]:
         """A row for each learner that diverged just now; failures: learner -> (step, quantity)."""
         new = self.diverged.add(failures)
-        if left := self.diverged.left:  # else the error names it
-            for end in new.values():
-                self.progress.note(divergence.note(end, left))
+        for s, end in new.items():
+            self.record.final_eval[s] = None
+            if self.diverged.left:  # else the error names it
+                self.progress.note(divergence.note(end))
         return [
             {"step": end["step"], "learner": s, "diverged": end["quantity"]}
             for s, end in new.items()
@@ -244,7 +243,7 @@ class Session:
     def _write(self, new: list[Row]) -> None:
         self.shelf.write(new, self.wall_s)
 
-    def _show(self, scalars: Mapping[str, float] = NOTHING, say: bool | None = None) -> None:
+    def _show(self, scalars: Mapping[str, float], say: bool | None) -> None:
         newest = [
             p[-1][1] for s, p in enumerate(self.record.returns) if p and s not in self.diverged.ends
         ]
@@ -260,9 +259,3 @@ class Session:
             known = values and s not in self.diverged.ends
             means.append(float(np.mean(values)) if known else None)
         return means
-
-    def final_evaluations(self) -> list[float | None]:
-        """Last evaluation per seed, of mode full if it was evaluated; None if it diverged."""
-        return [
-            v if s not in self.diverged.ends else None for s, v in enumerate(self.record.final_eval)
-        ]

@@ -3,8 +3,6 @@
 import json
 import re
 import shutil
-import subprocess
-import sys
 
 import pytest
 from omegaconf import OmegaConf
@@ -67,21 +65,6 @@ def test_a_word_that_reads_as_a_number_stays_a_word():
     again = OmegaConf.create(text)
     assert again == {"x": part, "y": {"x": part}, "z": [[1], [2]]}
     assert all(type(again.x[key]) is type(value) for key, value in values.items() if key != "f")
-
-
-def test_a_fresh_process_evaluates_and_resumes(trained, tmp_path):
-    """By the one and then by the other command, as `python -m` begins them."""
-    folder = shutil.copytree(trained, tmp_path / "run")
-    code = "import runpy, sys\n"
-    for line in (f"evaluate run={folder} episodes=1", f"train resume={folder} total_steps=150"):
-        name, *arguments = line.split()
-        code += f"sys.argv = {[name, *arguments]}\n"
-        code += f"runpy.run_module('hybrid_rl.{name}', run_name='__main__')\n"
-    whole = [sys.executable, "-c", code]
-    done = subprocess.run(whole, cwd=tmp_path, capture_output=True, text=True)
-    assert (done.returncode, done.stderr) == (0, ""), done.stderr
-    assert json.loads((folder / "evaluation_full.json").read_text())["step"] == 100
-    assert summary_of(folder)["total_steps"] == 150
 
 
 @pytest.mark.parametrize("key", ["run", "resume"])

@@ -195,9 +195,7 @@ def test_one_learner_diverges_and_the_other_goes_on(whole, tmp_path, capfd):
     assert finite(folder)
     assert call_train(f"resume={folder}", "total_steps=700") == 1  # and it stays out
     printed = capfd.readouterr().err
-    assert printed.startswith(
-        f"hybrid_rl: seed 1, step 251: {end['quantity']} is not finite; the oth"
-    )
+    assert printed.startswith(f"hybrid_rl: seed 1, step 251: {end['quantity']} is not finite; the")
     assert printed.count("\n") == 1
     assert {row["seed"] for row in rows_of(folder) if row["step"] > 251} == {0}
     assert rows_of(folder)[-1]["step"] == 700

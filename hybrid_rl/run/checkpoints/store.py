@@ -3,7 +3,6 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 import jax
@@ -22,7 +21,6 @@ from hybrid_rl.training.loop import Loop
 # {"seed", "step", "quantity"} of a learner that diverged; "of": its numbers, where a program has
 # several sets of them
 End = dict[str, Any]
-NONE: Mapping[int, End] = MappingProxyType({})
 
 
 @dataclass
@@ -102,9 +100,7 @@ class Shelf:
             for row, seed in zip(rows, seeds, strict=True):
                 log.write([{"step": row.pop("step"), "seed": seed} | row | {"wall_s": wall_s}])
 
-    def save(
-        self, state: Any, gathered: Gathered, record: Record, ends: Mapping[int, End] = NONE
-    ) -> None:
+    def save(self, state: Any, gathered: Gathered, record: Record, ends: Mapping[int, End]) -> None:
         """Write a checkpoint to each folder. state: [S, ...]; ends: by the learner's number."""
         sizes = [log.flush() for log in self.logs] or [0]
         parts = gathered.split(len(self.folders))
