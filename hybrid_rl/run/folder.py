@@ -114,22 +114,14 @@ def as_yaml(config: DictConfig) -> str:
 
 
 class _Dumper(yaml.SafeDumper):
-    """Lists on a line, and what reads as a number in YAML 1.2, such as 1e-3, in quotes."""
+    """Lists on a line."""
 
     def sequence(self, data: list[Any]) -> yaml.Node:
         flow = not any(isinstance(value, (dict, list)) for value in data)
         return self.represent_sequence("tag:yaml.org,2002:seq", data, flow_style=flow)
 
-    def word(self, data: str) -> yaml.Node:
-        try:
-            float(data)
-        except ValueError:
-            return self.represent_str(data)
-        return self.represent_scalar("tag:yaml.org,2002:str", data, style="'")
-
 
 _Dumper.add_representer(list, _Dumper.sequence)
-_Dumper.add_representer(str, _Dumper.word)
 
 
 def read(folder: Path, key: str) -> DictConfig:
@@ -171,16 +163,17 @@ def _check_version(folder: Path, key: str, config: Mapping[str, Any]) -> None:
 
 
 @contextmanager
-def blame_config(folder: Path, lacking: bool = False) -> Iterator[None]:
-    """Errors about the configuration of a run, or just `lacking` keys, name its config.yaml."""
+def blame_config(folder: Path) -> Iterator[None]:
+    """Errors about the configuration of a run name its config.yaml."""
     path = folder / "config.yaml"
     try:
         yield
+    except PartError:  # of a file of the user's own
+        raise
+    except (ConfigKeyError, ConfigAttributeError) as error:
+        raise UsageError(f"{path}: lacks {error.full_key or error.key}") from error
     except (UsageError, MisfitError, OmegaConfBaseException) as error:
-        absent = isinstance(error, ConfigKeyError | ConfigAttributeError)
-        if isinstance(error, PartError) or (lacking and not absent):  # of a file of the user's own
-            raise
-        line = f"lacks {error.full_key or error.key}" if absent else str(error).partition("\n")[0]
+        line = str(error).partition("\n")[0]
         raise UsageError(f"{path}: {line.removeprefix(f'{path}: ')}") from error
 
 

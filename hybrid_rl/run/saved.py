@@ -245,10 +245,8 @@ def _described(text: str, file: Path) -> dict[str, Any]:
 
 def _origin(about: Mapping[str, Any]) -> list[str]:
     """Lines about how a policy was made."""
-    lines = []
-    if about.get("command"):
-        lines.append(f"trained by: {printable(about['command'])}")
-    match about.get("evaluation"):
-        case {"mean": int() | float() as mean, "returns": list() as returns}:
-            lines.append(f"evaluated then: {mean:,.1f} (mean of {len(returns)} episodes)")
+    lines = [f"trained by: {printable(about['command'])}"] if about.get("command") else []
+    if evaluation := about.get("evaluation"):
+        count = len(evaluation["returns"])
+        lines.append(f"evaluated then: {evaluation['mean']:,.1f} (mean of {count} episodes)")
     return lines

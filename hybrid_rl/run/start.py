@@ -100,18 +100,13 @@ def joined(starts: Sequence[Start | None]) -> Start | None:
 
 
 def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:
-    """The new run of a checked configuration, and what it begins with."""
-    if config.get("run") is None:
-        return configuration.built(config), None
-    with folder.blame_config(Path(str(config.run)), lacking=True):
-        return _begun(config, Path(str(config.run)))
-
-
-def _begun(config: DictConfig, source: Path) -> tuple[Run, Start]:
-    """The run of `config`, and what it begins with: that of the run in `source`.
+    """The new run of a checked configuration, and what it begins with: that of the run in `run`.
 
     The configuration gets `begun`, from which the run can be built without that folder.
     """
+    if config.get("run") is None:
+        return configuration.built(config), None
+    source = Path(str(config.run))
     then = folder.read_trained(source, "run")
     if config.pretrain:
         raise UsageError(f"pretrain={config.pretrain}: what run={source} has learned is kept")

@@ -39,10 +39,6 @@ def test_restored_arrays_outlive_the_files_and_can_be_donated(three):
     assert move(result.params)["count"] == 30
 
 
-def test_newest_two_stay(three):
-    assert sorted(path.name for path in three.iterdir()) == ["20", "30"]
-
-
 def test_a_named_step_is_taken(three):
     step, result, meta, _ = checkpoint.restore(three, state_at(0), step=20)
     assert (step, meta) == (20, {"offset": 20})

@@ -65,26 +65,6 @@ def test_without_a_sound_checkpoint_nothing_is_done(copied, capfd):
     assert contents(copied) == before
 
 
-def test_a_full_disk_leaves_the_last_checkpoint(copied, monkeypatch, capfd):
-    """The system refuses files beyond 1 kB, as on a full disk."""
-    before = contents(copied / "checkpoints")
-    save, limits = checkpoint.save, resource.getrlimit(resource.RLIMIT_FSIZE)
-
-    def save_on_a_full_disk(*arguments, **known):
-        resource.setrlimit(resource.RLIMIT_FSIZE, (1000, limits[1]))
-        try:
-            save(*arguments, **known)
-        finally:
-            resource.setrlimit(resource.RLIMIT_FSIZE, limits)
-
-    monkeypatch.setattr(checkpoint, "save", save_on_a_full_disk)
-    assert call_train(f"resume={copied}", "total_steps=700") == 1
-    printed = only_line(capfd)
-    assert "checkpoint 700" in printed
-    assert "File too large; checkpoint 600 is intact" in printed
-    assert contents(copied / "checkpoints") == before
-
-
 def test_a_full_disk_is_named(copied, capfd):
     """Also where the system itself names no file: it refuses any longer than 1,000 bytes."""
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)

@@ -126,16 +126,6 @@ def test_what_was_imagined_is_kept_only_where_nothing_changed(source, monkeypatc
     assert seen
 
 
-def test_a_key_that_the_run_lacks_is_named(source, tmp_path):
-    folder = tmp_path / "older"
-    shutil.copytree(source, folder)
-    lines = (folder / "config.yaml").read_text().splitlines(keepends=True)
-    lines = [line for line in lines if not line.startswith("checkpoint_replay")]
-    (folder / "config.yaml").write_text("".join(lines))
-    with pytest.raises(UsageError, match=r"older/config\.yaml: lacks checkpoint_replay$"):
-        begun(folder)
-
-
 @pytest.mark.parametrize(
     ("given", "words"),
     [
