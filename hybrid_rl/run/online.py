@@ -35,7 +35,6 @@ from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.checkpoints.store import Record, Shelf
 from hybrid_rl.run.job import written
 from hybrid_rl.run.launch import fits, refuse_edits
-from hybrid_rl.run.logs.rows import Gathered
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings.values import check
@@ -224,7 +223,7 @@ class OnlineLearner:
             self._advance()
         with _writable(folder) as path, self._lock:
             shelf = Shelf(self._loop, [path / "checkpoints"], [written(self.config)])
-            shelf.save(learner.state, Gathered(), Record([[]], [None], step=learner.read), {})
+            shelf.save(learner.state, {}, Record([[]], [None], step=learner.read), {})
             run_folder.write(path, self.config)
 
     @classmethod

@@ -45,7 +45,7 @@ class Session:
     began: float = field(default_factory=monotonic)
     stop: int | None = None  # the signal that asked for an end; 0: the program did
     saved: tuple[int, bool] | None = None  # step and `unevaluated` of the newest checkpoint
-    gathered: rows.Gathered = field(default_factory=rows.Gathered)  # since the last row of means
+    gathered: rows.Metrics = field(default_factory=dict)  # since the last row of means
     recent: Speed = field(default_factory=Speed)  # since then
     pace: Pace = field(default_factory=Pace)
     program: Any = None  # compiled
@@ -170,10 +170,11 @@ class Session:
             self.record.returns[row["learner"]].append(pair)
         self._write(sorted(episodes + ended, key=lambda row: (row["step"], row["learner"])))
         self._continue(bool(infinite))
-        self.gathered.add(metrics)
+        self.gathered = rows.appended(self.gathered, metrics)
         if self.schedule.row_due(self.step, worlds):
             learners = len(self.loop.seeds)
-            means = rows.means(self.gathered.take(), learners, self.step, self.diverged.ends)
+            means = rows.means(self.gathered, learners, self.step, self.diverged.ends)
+            self.gathered = {}
             perf = {"perf/compile_s": self.loop.compile_s} | self._speed(len(self.shelf.logs))
             self._write([row | perf for row in means])
 

@@ -13,7 +13,7 @@ from hybrid_rl.errors import MisfitError
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.logs.log import RunLog
 from hybrid_rl.run.logs.records import Row
-from hybrid_rl.run.logs.rows import Gathered
+from hybrid_rl.run.logs.rows import Metrics
 from hybrid_rl.run.schedule import Speed
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.loop import Loop
@@ -100,12 +100,11 @@ class Shelf:
             for row, seed in zip(rows, seeds, strict=True):
                 log.write([{"step": row.pop("step"), "seed": seed} | row | {"wall_s": wall_s}])
 
-    def save(self, state: Any, gathered: Gathered, record: Record, ends: Mapping[int, End]) -> None:
+    def save(self, state: Any, gathered: Metrics, record: Record, ends: Mapping[int, End]) -> None:
         """Write a checkpoint to each folder. state: [S, ...]; ends: by the learner's number."""
         sizes = [log.flush() for log in self.logs] or [0]
-        parts = gathered.split(len(self.folders))
-        each = zip(self.folders, self.settings, self.shares(), sizes, parts, strict=True)
-        for folder, settings, share, size, part in each:
+        each = zip(self.folders, self.settings, self.shares(), sizes, strict=True)
+        for folder, settings, share, size in each:
             mine = replace(
                 record,
                 returns=record.returns[share],
@@ -118,19 +117,19 @@ class Shelf:
                 own = jax.tree.map(lambda leaf, at=share: leaf[at], state.replace(numbers={}))
             leaves = {each.name: getattr(own, each.name) for each in fields(own)}
             leaves |= {} if self.replay else {"memory": None}
-            names, array = part.pack()
-            leaves |= {} if array is None else {"gathered": array}
+            parts = [np.asarray(m[:, share], np.float32) for m in gathered.values()]
+            leaves |= {"gathered": np.stack(parts)} if parts else {}
             meta = {
                 "seeds": list(self.loop.seeds[share]),
                 "capacity": self.loop.agent.replay.capacity,
                 "settings": dict(settings),
-                "gathered": {"names": names, "shape": [] if array is None else list(array.shape)},
+                "gathered": {"names": [*gathered], "shape": np.shape(parts)},
                 "record": asdict(mine),
             }
             checkpoint.save(folder, record.step, leaves, meta)
         self.newest = record.step
 
-    def restore(self) -> tuple[Any, Gathered, Record, dict[int, End], list[str]]:
+    def restore(self) -> tuple[Any, Metrics, Record, dict[int, End], list[str]]:
         """(state [S, ...], metrics since the last row, record, ends by learner, notes).
 
         All from the newest sound checkpoints of one step; a kill may have left others.
@@ -151,7 +150,8 @@ class Shelf:
             learning=Speed(**metas[0]["record"]["learning"]),
             ends=[],
         )
-        gathered = Gathered.joined(list(map(self._gathered, self.folders, metas)))
+        each = list(map(self._gathered, self.folders, metas))
+        gathered = {n: np.concatenate([part[n] for part in each], axis=1) for n in each[0]}
         return self.loop.on_devices(state), gathered, whole, ends, notes
 
     def learner(self, number: int) -> Any:
@@ -189,11 +189,10 @@ class Shelf:
         memory = read_part(folder, agent, seeds, "memory", self.newest)[1].memory
         return memory if meta["capacity"] == now.capacity else each_learner(now.resized, memory)
 
-    def _gathered(self, folder: Path, meta: Mapping[str, Any]) -> Gathered:
+    def _gathered(self, folder: Path, meta: Mapping[str, Any]) -> Metrics:
         """The metrics in the newest checkpoint of a folder."""
-        gathered, packed = Gathered(), meta.get("gathered", {})
-        if packed.get("names"):
-            like = {"gathered": jax.ShapeDtypeStruct(tuple(packed["shape"]), np.float32)}
-            array = checkpoint.restore(folder, like, self.newest)[1]["gathered"]
-            gathered.unpack(packed["names"], array)
-        return gathered
+        if not (packed := meta["gathered"]).get("names"):
+            return {}
+        like = {"gathered": jax.ShapeDtypeStruct(tuple(packed["shape"]), np.float32)}
+        array = checkpoint.restore(folder, like, self.newest)[1]["gathered"]
+        return dict(zip(packed["names"], np.asarray(array), strict=True))
