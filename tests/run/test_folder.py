@@ -34,7 +34,7 @@ def test_a_run_that_is_being_written_is_not_resumed(copied, trained, capfd):
 
 
 HARM = {  # what of config.yaml becomes what, and the words of the line
-    "no YAML": (r"\A(.*\n)", r"\1]: [\n", "line 2 is no YAML"),
+    "no YAML": (r"\A(.*\n)", r"\1]: [\n", "is no YAML"),
     "no text": ("(?s).+", "\udce9", "is not text (UTF-8)"),
     "empty": ("(?s).+", "", "is empty"),
     "a word": ("(?s).+", "hello", ""),

@@ -5,7 +5,9 @@ their data, arrays without elements as their shape alone.
 """
 
 import contextlib
+import io
 import json
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -17,6 +19,7 @@ import numpy as np
 from hybrid_rl.errors import MisfitError
 from hybrid_rl.types import PyTree
 
+AFTERMATH = 0.5  # [s] in which tracebacks are printed after a failed write
 WRITTEN = "manifest.ocdbt"  # by Orbax as the last file: without it nothing can be read
 
 
@@ -61,8 +64,14 @@ def write(path: Path, leaves: dict[str, np.ndarray]) -> None:
 
     filled = {name: leaf for name, leaf in leaves.items() if leaf.size}  # it refuses empty ones
     handler = ocp.PyTreeCheckpointHandler(use_compression=False)
-    with _plain(path) as plain, ocp.Checkpointer(handler) as writer:
-        writer.save(plain / "state", ocp.args.PyTreeSave(filled))
+    # after a failed write threads of TensorStore print tracebacks
+    with contextlib.redirect_stderr(io.StringIO()), _plain(path) as plain:
+        with ocp.Checkpointer(handler) as writer:
+            try:
+                writer.save(plain / "state", ocp.args.PyTreeSave(filled))
+            except Exception:
+                time.sleep(AFTERMATH)
+                raise
     if filled and not (path / "state" / WRITTEN).is_file():
         raise OSError(f"Orbax left no state/{WRITTEN}")
 
