@@ -64,14 +64,13 @@ def write(path: Path, leaves: dict[str, np.ndarray]) -> None:
 
     filled = {name: leaf for name, leaf in leaves.items() if leaf.size}  # it refuses empty ones
     handler = ocp.PyTreeCheckpointHandler(use_compression=False)
-    # after a failed write threads of TensorStore print tracebacks
-    with contextlib.redirect_stderr(io.StringIO()), _plain(path) as plain:
-        with ocp.Checkpointer(handler) as writer:
-            try:
-                writer.save(plain / "state", ocp.args.PyTreeSave(filled))
-            except Exception:
-                time.sleep(AFTERMATH)
-                raise
+    quiet = contextlib.redirect_stderr(io.StringIO())  # of TensorStore's threads, after a failure
+    with quiet, _plain(path) as plain, ocp.Checkpointer(handler) as writer:
+        try:
+            writer.save(plain / "state", ocp.args.PyTreeSave(filled))
+        except Exception:
+            time.sleep(AFTERMATH)
+            raise
     if filled and not (path / "state" / WRITTEN).is_file():
         raise OSError(f"Orbax left no state/{WRITTEN}")
 
