@@ -205,7 +205,11 @@ def parse_config(folder: Path, key: str = "runs") -> DictConfig:
     """
     path = folder / "config.yaml"
     if not path.exists():
-        raise UsageError(f"{key}={'' if folder == Path() else folder}: {_instead(folder, key)}")
+        flaw = "no run folder there (no config.yaml in it)"
+        if runs := members(folder):
+            listed = ", ".join(f"{run} ({words(values)})" for run, values in runs.items())
+            flaw = f"holds a sweep; give one of its runs: {listed}"
+        raise UsageError(f"{key}={folder}: {flaw}")
     values = yaml_file(path)
     try:
         parts.check({**values, "recipe": str(values.get("recipe"))}, folder)
@@ -214,11 +218,3 @@ def parse_config(folder: Path, key: str = "runs") -> DictConfig:
         raise UsageError(f"{path}: {error}") from error
     defaults: Any = OmegaConf.load(CONF / "train.yaml")
     return OmegaConf.create(values | {"compile_cache": defaults.compile_cache})
-
-
-def _instead(folder: Path, key: str) -> str:
-    """The line about a folder without config.yaml, which may hold a sweep."""
-    if runs := members(folder):
-        listed = ", ".join(f"{run} ({words(values)})" for run, values in runs.items())
-        return f"holds a sweep; give one of its runs: {listed}"
-    return "no run folder there (no config.yaml in it)"
