@@ -109,7 +109,7 @@ class Job:
 def _summary(config: DictConfig, session: Session, run_dir: Path, share: slice) -> dict[str, Any]:
     """The contents of summary.json of the learners in `share`."""
     values = plain(config)
-    ends, rate = session.diverged.ends, session.record.learning.rate
+    ends, rate = session.record.ends, session.record.learning.rate
     return {
         "task": config.task,
         "algo": config.algo,

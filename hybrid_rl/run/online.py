@@ -223,7 +223,7 @@ class OnlineLearner:
             self._advance()
         with _writable(folder) as path, self._lock:
             shelf = Shelf(self._loop, [path / "checkpoints"], [written(self.config)])
-            shelf.save(learner.state, {}, Record([[]], [None], step=learner.read), {})
+            shelf.save(learner.state, {}, Record([[]], [None], step=learner.read))
             run_folder.write(path, self.config)
 
     @classmethod
@@ -241,7 +241,7 @@ class OnlineLearner:
         learner = cls(config, learn=learn)
         learner.close()
         shelf = Shelf(learner._loop, [Path(folder) / "checkpoints"], [{}])
-        learner._learner.state, _, record, *_ = shelf.restore()
+        learner._learner.state, _, record, _ = shelf.restore()
         learner._start(record.step)
         return learner
 

@@ -19,7 +19,6 @@ from hybrid_rl.errors import DivergenceError
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run import divergence
 from hybrid_rl.run.checkpoints.store import Record, Shelf
-from hybrid_rl.run.divergence import Diverged
 from hybrid_rl.run.evaluations import EVALUATED, Evaluations
 from hybrid_rl.run.logs import rows
 from hybrid_rl.run.logs.progress import Progress
@@ -52,15 +51,20 @@ class Session:
     evaluations: Evaluations | None = None  # compiled
 
     def __post_init__(self) -> None:
-        """Create the record, and the list of learners that diverged."""
+        """Create the record."""
         seeds = self.loop.seeds
         self.record = Record([[] for _ in seeds], [None for _ in seeds])
-        self.diverged = Diverged(self.loop, self.shelf)
+        self._sound: dict[int, Any] = {}  # the states that replace those of learners that diverged
 
     @property
     def step(self) -> int:
         """Decisions of each learner."""
         return self.record.step
+
+    @property
+    def left(self) -> int:
+        """Learners that continue."""
+        return len(self.loop.seeds) - len(self.record.ends)
 
     @property
     def wall_s(self) -> float:
@@ -83,13 +87,12 @@ class Session:
 
     def resume(self) -> None:
         """Start from the newest sound checkpoint."""
-        self.state, self.gathered, self.record, ends, notes = self.shelf.restore()
+        self.state, self.gathered, self.record, notes = self.shelf.restore()
         self.progress.update(self.step, {}, say=False)
         if not self.schedule.checkpoint_replay:
             self.loop.agent = replace(self.loop.agent, first_update=self.step)
             notes += ["no replay memory in checkpoints: it continues, but not bit for bit"]
         self.saved = self.step, self.record.unevaluated
-        self.diverged.ends = ends
         for note in (*notes, *self.loop.notes):
             self.progress.note(note)
         self.progress.note(f"continuing from step {self.step:,}")
@@ -151,7 +154,7 @@ class Session:
             self.pace = Pace()
         if start >= max(changes):
             for speed in (self.recent, self.record.learning):
-                speed.add(rounds * worlds * self.diverged.left, took)
+                speed.add(rounds * worlds * self.left, took)
         self._record(metrics, start)
         due = plan.due(plan.eval_every, self.step, worlds)
         self.record.unevaluated = bool(plan.eval_modes) and due
@@ -164,7 +167,7 @@ class Session:
         if jax.config.jax_debug_nans:
             infinite = divergence.unsound(self.state.learners, self.step) | infinite
         ended = self._end(infinite)
-        episodes = rows.episodes(metrics, start, worlds, self.diverged.steps)
+        episodes = rows.episodes(metrics, start, worlds, self.record.ends)
         for row in episodes:
             pair = (row["step"], float(row["train/return"]))
             self.record.returns[row["learner"]].append(pair)
@@ -173,7 +176,7 @@ class Session:
         self.gathered = rows.appended(self.gathered, metrics)
         if self.schedule.row_due(self.step, worlds):
             learners = len(self.loop.seeds)
-            means = rows.means(self.gathered, learners, self.step, self.diverged.ends)
+            means = rows.means(self.gathered, learners, self.step, self.record.ends)
             self.gathered = {}
             perf = {"perf/compile_s": self.loop.compile_s} | self._speed(len(self.shelf.logs))
             self._write([row | perf for row in means])
@@ -202,7 +205,7 @@ class Session:
             if not np.isfinite(outcome[name])
         }
         ended = self._end(infinite)
-        left = {s: o for s, o in enumerate(outcomes) if s not in self.diverged.ends}
+        left = {s: o for s, o in enumerate(outcomes) if s not in self.record.ends}
         rows_left = [{"step": self.step, "learner": s} | each for s, each in left.items()]
         self._write(sorted(rows_left + ended, key=lambda row: row["learner"]))
         self._continue(bool(ended))
@@ -214,10 +217,11 @@ class Session:
 
     def _end(self, failures: Mapping[int, tuple[int, str]]) -> list[Row]:
         """A row for each learner that diverged just now; failures: learner -> (step, quantity)."""
-        new = self.diverged.add(failures)
+        new = divergence.new_ends(self.loop, self.record.ends, failures)
+        self.record.ends |= new
         for s, end in new.items():
             self.record.final_eval[s] = None
-            if self.diverged.left:  # else the error names it
+            if self.left:  # else the error names it
                 self.progress.note(divergence.note(end))
         return [
             {"step": end["step"], "learner": s, "diverged": end["quantity"]}
@@ -225,12 +229,18 @@ class Session:
         ]
 
     def _continue(self, repair: bool) -> None:
-        """Raise DivergenceError if no learner is left; repair those that have ended."""
-        if not self.diverged.left:
-            ends = list(self.diverged.ends.values())
+        """Raise DivergenceError if no learner is left; `repair` those that have ended.
+
+        The program computes all learners together, so one that has ended is still computed, from
+        the state of its last sound checkpoint, or its initial state.
+        """
+        if not self.left:
+            ends = list(self.record.ends.values())
             raise DivergenceError(divergence.line(ends, 0, self.shelf.newest))
-        if repair:
-            self.state = self.diverged.repaired(self.state)
+        for s in self.record.ends if repair else ():
+            if s not in self._sound:
+                self._sound[s] = self.shelf.learner(s)
+            self.state = self.loop.with_learner(self.state, s, self._sound[s])
 
     def _save(self) -> None:
         """Write a checkpoint."""
@@ -238,7 +248,7 @@ class Session:
         self._continue(True)
         now = replace(self.record, wall_s=self.wall_s)
         with self.progress.doing("saving"):
-            self.shelf.save(self.state, self.gathered, now, self.diverged.ends)
+            self.shelf.save(self.state, self.gathered, now)
         self.saved = self.step, self.record.unevaluated
 
     def _write(self, new: list[Row]) -> None:
@@ -246,7 +256,7 @@ class Session:
 
     def _show(self, scalars: Mapping[str, float], say: bool | None) -> None:
         newest = [
-            p[-1][1] for s, p in enumerate(self.record.returns) if p and s not in self.diverged.ends
+            p[-1][1] for s, p in enumerate(self.record.returns) if p and s not in self.record.ends
         ]
         shown = {"train/return": float(np.mean(newest))} if newest else {}
         self.progress.update(self.step, {**shown, **self._speed(), **scalars}, say)
@@ -257,6 +267,6 @@ class Session:
         means = []
         for s, pairs in enumerate(self.record.returns):
             values = [value for at, value in pairs if at > tail] or [v for _, v in pairs[-1:]]
-            known = values and s not in self.diverged.ends
+            known = values and s not in self.record.ends
             means.append(float(np.mean(values)) if known else None)
         return means

@@ -34,7 +34,7 @@ class Record:
     metrics_bytes: int = 0  # of a checkpoint: the size of metrics.jsonl then
     learning: Speed = field(default_factory=Speed)  # over all sessions
     unevaluated: bool = False  # an evaluation is due at `step`
-    ends: list[End] = field(default_factory=list)  # of learners that diverged
+    ends: dict[int, End] = field(default_factory=dict)  # of learners that diverged, by number
 
 
 def with_capacity(agent: Agent, capacity: int) -> Agent:
@@ -100,8 +100,8 @@ class Shelf:
             for row, seed in zip(rows, seeds, strict=True):
                 log.write([{"step": row.pop("step"), "seed": seed} | row | {"wall_s": wall_s}])
 
-    def save(self, state: Any, gathered: Metrics, record: Record, ends: Mapping[int, End]) -> None:
-        """Write a checkpoint to each folder. state: [S, ...]; ends: by the learner's number."""
+    def save(self, state: Any, gathered: Metrics, record: Record) -> None:
+        """Write a checkpoint to each folder. state: [S, ...]."""
         sizes = [log.flush() for log in self.logs] or [0]
         each = zip(self.folders, self.settings, self.shares(), sizes, strict=True)
         for folder, settings, share, size in each:
@@ -110,8 +110,8 @@ class Shelf:
                 returns=record.returns[share],
                 final_eval=record.final_eval[share],
                 metrics_bytes=size,
-                ends=[end for s, end in ends.items() if share.start <= s < share.stop],
             )
+            ends = [end for s, end in record.ends.items() if share.start <= s < share.stop]
             own = state
             if len(self.folders) > 1:  # of which the configuration has the numbers
                 own = jax.tree.map(lambda leaf, at=share: leaf[at], state.replace(numbers={}))
@@ -124,21 +124,22 @@ class Shelf:
                 "capacity": self.loop.agent.replay.capacity,
                 "settings": dict(settings),
                 "gathered": {"names": [*gathered], "shape": np.shape(parts)},
-                "record": asdict(mine),
+                "record": asdict(mine) | {"ends": ends},
             }
             checkpoint.save(folder, record.step, leaves, meta)
         self.newest = record.step
 
-    def restore(self) -> tuple[Any, Metrics, Record, dict[int, End], list[str]]:
-        """(state [S, ...], metrics since the last row, record, ends by learner, notes).
+    def restore(self) -> tuple[Any, Metrics, Record, list[str]]:
+        """(state [S, ...], metrics since the last row, record, notes).
 
         All from the newest sound checkpoints of one step; a kill may have left others.
         """
         state, metas, notes = self._state(None)
-        records, ends = [Record(**meta["record"]) for meta in metas], {}
-        for record, share in zip(records, self.shares(), strict=True):
-            seeds = self.loop.seeds[share]
-            ends |= {share.start + seeds.index(end["seed"]): end for end in record.ends}
+        records, ends = [], {}
+        for meta, share in zip(metas, self.shares(), strict=True):
+            seeds, own = self.loop.seeds[share], meta["record"]
+            ends |= {share.start + seeds.index(end["seed"]): end for end in own["ends"]}
+            records.append(Record(**(own | {"ends": {}})))
         for log, record in zip(self.logs, records, strict=bool(self.logs)):
             notes += log.rewind(record.metrics_bytes, record.step)
         whole = replace(
@@ -148,11 +149,11 @@ class Shelf:
             wall_s=max(record.wall_s for record in records),
             unevaluated=any(record.unevaluated for record in records),
             learning=Speed(**metas[0]["record"]["learning"]),
-            ends=[],
+            ends=ends,
         )
         each = list(map(self._gathered, self.folders, metas))
         gathered = {n: np.concatenate([part[n] for part in each], axis=1) for n in each[0]}
-        return self.loop.on_devices(state), gathered, whole, ends, notes
+        return self.loop.on_devices(state), gathered, whole, notes
 
     def learner(self, number: int) -> Any:
         """AgentState [...] of one learner in the newest checkpoint, or else its first one."""

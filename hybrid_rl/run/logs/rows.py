@@ -5,6 +5,7 @@ of E worlds of each of S learners. Rows have the number of a learner here, and i
 """
 
 from collections.abc import Container, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -44,10 +45,12 @@ def of_world(name: str) -> bool:
     return name.startswith("world/") and name != ACTION
 
 
-def episodes(metrics: Metrics, start: int, worlds: int, ended: Mapping[int, int]) -> list[Row]:
+def episodes(
+    metrics: Metrics, start: int, worlds: int, ended: Mapping[int, Mapping[str, Any]]
+) -> list[Row]:
     """A row per episode that ended in the rounds after `start`.
 
-    ended: learner -> the step at which it diverged; it has no rows from there on.
+    ended: learner -> where it diverged, with "step"; it has no rows from there on.
     """
     return [
         {
@@ -57,7 +60,7 @@ def episodes(metrics: Metrics, start: int, worlds: int, ended: Mapping[int, int]
             "train/length": int(metrics["episode/length"][i, s, e]),
         }
         for i, s, e in np.argwhere(metrics["episode/done"])
-        if (step := start + (int(i) + 1) * worlds) < ended.get(int(s), np.inf)
+        if (step := start + (int(i) + 1) * worlds) < ended.get(int(s), {}).get("step", np.inf)
     ]
 
 
