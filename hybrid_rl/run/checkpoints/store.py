@@ -138,7 +138,7 @@ class Shelf:
         records, ends = [], {}
         for meta, share in zip(metas, self.shares(), strict=True):
             seeds, own = self.loop.seeds[share], meta["record"]
-            ends |= {share.start + seeds.index(end["seed"]): end for end in own["ends"]}
+            ends |= {share.start + seeds.index(end["seed"]): end for end in own.get("ends", ())}
             records.append(Record(**(own | {"ends": {}})))
         for log, record in zip(self.logs, records, strict=bool(self.logs)):
             notes += log.rewind(record.metrics_bytes, record.step)
