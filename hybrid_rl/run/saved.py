@@ -185,7 +185,7 @@ def read(name: str) -> Trained:
     prefix, known = f"policy={name}:", f"choose a file, or one of {', '.join(names())}"
     try:
         arrays = archive.read(prefix, file, hint=known)
-        about = _described(str(arrays.get(archive.ABOUT, "")), archive.find(file))
+        about = _described(str(arrays.get(archive.ABOUT, "{}")), archive.find(file))
         prepare(configuration.load([]))
         return _trained(prefix, str(file), str(arrays["task"]), about)
     except (ValueError, *UNFIT) as error:
