@@ -52,9 +52,9 @@ from hybrid_rl.cli.arguments import (
     whole,
 )
 from hybrid_rl.errors import UsageError
+from hybrid_rl.files.atomic import write_text
 from hybrid_rl.networks.precision import PRECISIONS, choose, current
-from hybrid_rl.run.evaluated import evaluate, report
-from hybrid_rl.run.files.integrity import write_text
+from hybrid_rl.run.evaluations import evaluate, report
 from hybrid_rl.run.folder import members
 from hybrid_rl.run.logs.progress import say
 from hybrid_rl.run.retarget import load_changed

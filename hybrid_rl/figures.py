@@ -24,7 +24,7 @@ from hybrid_rl.analysis.results import redrawn
 from hybrid_rl.analysis.studies import arguments, save, studies, study_of, styled
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import HELP, Argument, output, read
-from hybrid_rl.run.files.integrity import write_text
+from hybrid_rl.files.atomic import write_text
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.settings.build import load
 

@@ -27,10 +27,10 @@ from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import MODE, Argument, flag, number, read
 from hybrid_rl.errors import UsageError
 from hybrid_rl.files.atomic import refuse_link
+from hybrid_rl.files.lock import lock
 from hybrid_rl.outside.actor import LOST, Actor
 from hybrid_rl.outside.robot_process import report
 from hybrid_rl.run import folder as run_folder
-from hybrid_rl.run.files.lock import lock
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.run.saved import build_run, load
 

@@ -11,14 +11,14 @@ from hydra.plugins.sweeper import Sweeper
 class CheckedSweeper(Sweeper):
     """`hybrid_rl.cli.sweep.Sweeper`."""
 
-    def __init__(self, max_batch_size: int | None = None, params: Any = None) -> None:
-        self.given = (max_batch_size, params)
+    def __init__(self, params: Any = None) -> None:
+        self.params = params
 
     def setup(self, **given: Any) -> None:
         """Hydra's: what to run, and by which launcher."""
         from hybrid_rl.cli import sweep
 
-        self.sweeper = sweep.Sweeper(*self.given)
+        self.sweeper = sweep.Sweeper(self.params)
         self.sweeper.setup(**given)
 
     def sweep(self, arguments: list[str]) -> Any:

@@ -171,7 +171,7 @@ def check(given: Mapping[str, Any]) -> None:
 def main() -> None:
     """The command."""
     # Here, as a learner's clock starts without JAX.
-    from hybrid_rl.run.files.integrity import write_text
+    from hybrid_rl.files.atomic import write_text
     from hybrid_rl.run.machine.provenance import versions
 
     given: Any = read(__doc__, ARGUMENTS)[0]

@@ -14,20 +14,19 @@ from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.adapters.stand_in import Cartpole
 from hybrid_rl.errors import CheckpointError, UsageError
 from hybrid_rl.files.atomic import open_own, own_folder, refuse_link, replacing
+from hybrid_rl.files.lock import lock
 from hybrid_rl.outside import handover
 from hybrid_rl.outside.robot_process import RobotProcess, report
 from hybrid_rl.outside.row_log import RowLog
 from hybrid_rl.run.checkpoints import checkpoint
-from hybrid_rl.run.files.lock import lock
 from hybrid_rl.run.logs.log import RunLog
-from hybrid_rl.run.logs.loggers import Begun, WandB
-from hybrid_rl.run.logs.tensorboard import TensorBoard
+from hybrid_rl.run.logs.loggers import Begun, TensorBoard, WandB
 from hybrid_rl.types import Spec
 
 PACKAGE = Path(__file__).resolve().parents[1] / "hybrid_rl"
 ROW = {"step": 5, "seed": 0, "wall_s": 1.0, "eval/return": -3.0}
 WRITERS = ("run/**/*.py", "training/*.py", "robot.py")
-WRITERS += ("outside/*.py", "cli/sweep.py", "files/atomic.py")
+WRITERS += ("outside/*.py", "cli/sweep.py", "files/[alr]*.py")
 OPENS = r".+\.(write_text|write_bytes|touch|mk\w*dirs?|mkfifo|copy2|copyfile)|(.*\.)?(open|fdopen)"
 OPENS += r"|(np|OmegaConf)\.save\w*"
 OPENED = {  # in what writes to run folders; the folder of a run itself is the user's, or new
@@ -36,14 +35,14 @@ OPENED = {  # in what writes to run folders; the folder of a run itself is the u
         "os.open(file, flags | NO_LINK | NO_WAIT, 438)",  # `own_file`
         "open(file, mode, opener=lambda path, flags: own_file(Path(path), flags), **how)",
         "os.open(path, os.O_RDONLY)",  # `sync`
-    },
-    "run/files/reading.py": {"os.open(file, os.O_RDONLY | NO_WAIT)", "os.fdopen(handle, 'rb')"},
-    "run/files/integrity.py": {
-        "manifest.write_text(json.dumps({'files': listed}, indent=1) + '\\n', encoding='ascii')",
-        "path.open('rb')",
         "draft.open('x', encoding='utf-8')",  # of `replacing`
     },
-    "run/files/lock.py": {"folder.mkdir(parents=True, exist_ok=True)"},
+    "files/reading.py": {"os.open(file, os.O_RDONLY | NO_WAIT)", "os.fdopen(handle, 'rb')"},
+    "files/lock.py": {"folder.mkdir(parents=True, exist_ok=True)"},
+    "run/checkpoints/manifest.py": {
+        "manifest.write_text(json.dumps({'files': listed}, indent=1) + '\\n', encoding='ascii')",
+        "path.open('rb')",
+    },
     "run/folder.py": {"folder.mkdir(parents=True)"},
     "run/machine/jax_settings.py": {"cache.mkdir(parents=True, exist_ok=True)"},
     "run/logs/progress.py": {"os.open(os.devnull, os.O_WRONLY)"},
@@ -119,7 +118,7 @@ WRITE = {  # what would be written, by the file or the folder that is a link
     "robot/stop": lambda run: open_own(run / "robot" / "stop").close(),
     "robot": lambda run: own_folder(run / "robot"),
     "lock": lambda run: lock(run, "run_dir").__enter__(),
-    "metrics.jsonl": lambda run: RunLog(run, [0]).__enter__(),
+    "metrics.jsonl": lambda run: RunLog(run, [0]).flush(),
     "tensorboard": tensorboard,
     "tensorboard/seed_0": tensorboard,
     "wandb": lambda run: WandB(Begun(run, [0], {})).id_of(0),

@@ -137,7 +137,7 @@ def test_a_run_without_a_checkpoint_is_not_resumed_and_none_is_written_over(
     for line, words in (
         ([f"resume={folders['begun']}"], "holds no checkpoint yet"),
         ([*TINY, f"run_dir={folders['trained']}"], "holds a run already; choose another, or res"),
-        ([*TINY, f"run_dir={folders['begun']}"], "holds a run without a checkpoint; delete it, or"),
+        ([*TINY, f"run_dir={folders['begun']}"], "holds a run already; choose another, or res"),
     ):
         assert call_train(*line) == 2
         assert words in only_line(capfd)

@@ -13,11 +13,9 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run.files.reading import Loader, json_file, lines, yaml_file
-from hybrid_rl.run.logs.records import COORDINATES, WORD, arrays, flatten_keys, row_of, summary_of
+from hybrid_rl.files.reading import json_file, open_file, yaml_file
+from hybrid_rl.run.logs.records import COORDINATES, WORD, arrays, flatten_keys, row_of
 from hybrid_rl.settings.complete import nearest
 from hybrid_rl.settings.values import PAID, SECTIONS
 
@@ -45,15 +43,14 @@ class RunFolder:
     def _read(self) -> tuple[list[dict[str, Any]], bool]:
         """The rows, and whether the last one is incomplete."""
         file, rows, last = self.path / "metrics.jsonl", [], b""
-        for number, last in enumerate(lines(file), 1):
-            if not last.endswith(b"\n"):  # what follows the last line end is cut
-                break
-            row = row_of(last)
-            if row is None:
-                raise UsageError(
-                    f"{file}: line {number} is no row of metrics (JSON with step, seed and wall_s)"
-                )
-            rows.append(row)
+        with open_file(file) as data:
+            for number, last in enumerate(data, 1):
+                if not last.endswith(b"\n"):  # what follows the last line end is cut
+                    break
+                if (row := row_of(last)) is None:
+                    line = f"line {number} is no row of metrics (JSON with step, seed and wall_s)"
+                    raise UsageError(f"{file}: {line}")
+                rows.append(row)
         return rows, not last.endswith(b"\n") and bool(last.strip())
 
     @property
@@ -72,9 +69,7 @@ class RunFolder:
         file = self.path / "config.yaml"
         if not file.exists():
             return {}
-        values = yaml_file(file, lambda text: yaml.load(text, Loader))
-        if not isinstance(values, dict):
-            raise UsageError(f"{file}: is empty, or no group of keys")
+        values = yaml_file(file)
         for key in ("recipe", "config_dir"):  # the words; the values follow
             values.pop(key, None)
         return flatten_keys(values)
@@ -83,7 +78,7 @@ class RunFolder:
     def summary(self) -> dict[str, Any]:
         """What summary.json holds; {} before there is one."""
         file = self.path / "summary.json"
-        return summary_of(file) if file.exists() else {}
+        return json_file(file) if file.exists() else {}
 
     def word(self, key: str, argument: str = "group") -> str:
         """The value at `key`, which `argument` names, as a word; of a part its class."""

@@ -24,8 +24,7 @@ from typing import TYPE_CHECKING, Any
 from hybrid_rl.analysis.style import STYLE
 from hybrid_rl.cli.arguments import Argument
 from hybrid_rl.errors import UsageError
-from hybrid_rl.files.atomic import replacing
-from hybrid_rl.run.files.integrity import write_text
+from hybrid_rl.files.atomic import replacing, write_text
 from hybrid_rl.run.logs.records import json_value
 from hybrid_rl.settings.complete import nearest
 

@@ -20,7 +20,7 @@ from hybrid_rl.analysis.curves import Curve, curve_of
 from hybrid_rl.analysis.logged import Learner
 from hybrid_rl.analysis.results import RunFolder, find
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run.files.reading import text as text_of
+from hybrid_rl.files.reading import text as text_of
 from hybrid_rl.run.folder import members
 
 COLUMNS = ("exp_name", "env_name", "seed", "metric", "env_step", "value")

@@ -91,10 +91,6 @@ def reported(job: Callable[[], None]) -> None:
             _fail(1, line)
         raise
     except KeyboardInterrupt:
-        _interrupted()
-
-
-def _interrupted() -> NoReturn:
-    if interrupt.installed():
-        interrupt.leave()
-    _fail(130, "interrupted")
+        if interrupt.installed():
+            interrupt.leave()
+        _fail(130, "interrupted")

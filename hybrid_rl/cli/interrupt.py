@@ -15,10 +15,8 @@ only `as_call` has an effect: it sets Python's handlers until its block ends. SI
 where it is, as under nohup.
 """
 
-import atexit
 import os
 import signal
-import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -53,7 +51,6 @@ def install() -> None:
     if _State.installed:
         return
     _State.installed = True
-    _check_graphics(os.environ.get("MUJOCO_GL", ""))
     # Importing mujoco loads GLFW by a Python child, which would print a traceback on Ctrl-C.
     os.environ.setdefault("MUJOCO_GL", "disable")  # envs/mujoco/offscreen chooses its own backend
     heard, written = os.pipe()
@@ -61,21 +58,7 @@ def install() -> None:
     signal.set_wakeup_fd(written, warn_on_full_buffer=False)
     for number in _heard():
         signal.signal(number, _in_the_main_thread)
-    atexit.register(_deaf)
-    sys.unraisablehook = _unraisable
     threading.Thread(target=_listen, args=(heard,), name="signals", daemon=True).start()
-
-
-def _check_graphics(chosen: str) -> None:
-    """End the process if mujoco cannot be imported with this MUJOCO_GL, which is a traceback."""
-    if chosen in ("", "disable"):
-        return
-    try:
-        import mujoco  # noqa: F401
-    except (AttributeError, ImportError, OSError, RuntimeError):
-        what = "unset it, or apt-get install libegl1 for egl, libosmesa6 for osmesa"
-        print(f"hybrid_rl: MUJOCO_GL={chosen}: cannot be loaded; {what}", file=sys.stderr)
-        sys.exit(2)
 
 
 @contextmanager
@@ -140,12 +123,6 @@ def _heard() -> list[int]:
     return [n for n in WORDS if n != signal.SIGHUP or signal.getsignal(n) != signal.SIG_IGN]
 
 
-def _deaf() -> None:
-    """Ignore the signals while Python ends, which would restore their default action."""
-    for number in _heard():
-        signal.signal(number, signal.SIG_IGN)
-
-
 def cause() -> int | None:
     """The signal that became KeyboardInterrupt."""
     return _State.raised
@@ -193,10 +170,3 @@ def _act(number: int) -> None:
         timer.start()
     else:
         leave(number)
-
-
-def _unraisable(problem: Any) -> None:
-    """End the process if Python swallows a KeyboardInterrupt in a destructor or in gc."""
-    if issubclass(problem.exc_type, KeyboardInterrupt):
-        leave()
-    sys.__unraisablehook__(problem)

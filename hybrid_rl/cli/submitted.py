@@ -24,28 +24,25 @@ def require_slurm(launcher: str) -> None:
         raise UsageError(f"hydra/launcher={launcher}: {line}")
 
 
-def launch(
-    launcher: Any, jobs: Sequence[list[str]], first: int, results: dict[int, Result]
-) -> None:
-    """Run `jobs`, numbered from `first`; print a line when one is sent, begins and ends.
+def launch(launcher: Any, jobs: Sequence[list[str]], results: dict[int, Result]) -> None:
+    """Run `jobs`; print a line when one is sent and when it ends.
 
     launcher: one of Submitit's. A lost job, whose process was killed, for example, has failed.
     """
     from submitit.core.utils import FailedJobError
 
-    numbers, state = range(first, first + len(jobs)), Singleton.get_state()
-    calls = [
-        (job, "hydra.sweep.dir", n, f"{n}", state) for n, job in zip(numbers, jobs, strict=True)
-    ]
+    state = Singleton.get_state()
+    calls = [(job, "hydra.sweep.dir", n, f"{n}", state) for n, job in enumerate(jobs)]
     try:
         executor = _executor(launcher.params, launcher._EXECUTOR)
         sent = executor.map_array(launcher, *zip(*calls, strict=True))
     except FailedJobError as error:
         key = f"hydra/launcher=submitit_{launcher._EXECUTOR}"
         raise UsageError(f"{key}: the jobs could not be sent: {error}") from error
-    running = dict(zip(numbers, sent, strict=True))
+    running = dict(enumerate(sent))
     for number, job in running.items():
-        print(f"job {number} sent: {executor.cluster} {job.job_id}", flush=True)
+        log = relative(job.paths.stdout)
+        print(f"job {number} sent: {executor.cluster} {job.job_id}, log {log}", flush=True)
     with interrupt.as_exception(PATIENCE + 5):
         try:
             _wait(running, results)
@@ -72,17 +69,11 @@ def _executor(params: Mapping[str, Any], cluster: str) -> Any:
 
 
 def _wait(jobs: dict[int, Any], results: dict[int, Result], most: float = math.inf) -> None:
-    """Wait for the end of all jobs, at most `most` [s], and print when each begins and ends."""
-    began, running = time.monotonic(), set()
+    """Wait for the end of all jobs, at most `most` [s], and print when each ends."""
+    began = time.monotonic()
     while len(results.keys() & jobs.keys()) < len(jobs) and time.monotonic() - began < most:
         for number, job in jobs.items():
-            if number in results:
-                continue
-            ended = job.done()  # asked first: a job that has ended has begun
-            if number not in running and job.paths.stdout.exists():
-                running.add(number)
-                print(f"job {number} begins: log {relative(job.paths.stdout)}", flush=True)
-            if ended:
+            if number not in results and job.done():
                 results[number] = _result(job)
                 print(f"job {number} ends: {results[number]['line']}", flush=True)
         time.sleep(POLL)

@@ -23,9 +23,9 @@ from omegaconf import DictConfig, OmegaConf
 from hybrid_rl.cli import command
 from hybrid_rl.cli.submitted import Result, launch, require_slurm
 from hybrid_rl.errors import UsageError
+from hybrid_rl.files.atomic import write_text
 from hybrid_rl.run import members as program
 from hybrid_rl.run.checkpoints import checkpoint
-from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.folder import members, new_folder
 from hybrid_rl.run.logs.records import result_line
 from hybrid_rl.run.machine.jax_settings import prepare
@@ -94,8 +94,8 @@ def here(hydra: Any) -> bool:
 class Sweeper:
     """Checks, runs and reports every combination of the given values."""
 
-    def __init__(self, max_batch_size: int | None = None, params: Any = None) -> None:
-        self.max_batch_size, self.params = max_batch_size, params or {}
+    def __init__(self, params: Any = None) -> None:
+        self.params = params or {}
 
     def setup(self, *, hydra_context: Any, task_function: Any, config: DictConfig) -> None:
         """Get from Hydra what to run, and by which launcher."""
@@ -113,14 +113,12 @@ class Sweeper:
         jobs = _folders(jobs, configs)
         write_text(folder / "multirun.yaml", OmegaConf.to_yaml(self.config))
         print(f"sweep of {len(jobs)} jobs: {folder}", flush=True)
-        results, size = self.task.results, self.max_batch_size or len(jobs)
+        results, given = self.task.results, [*map(self._forced, jobs)]
         try:
-            for first in range(0, len(jobs), size):
-                some = [self._forced(job) for job in jobs[first : first + size]]
-                if here(self.config.hydra):
-                    self.launcher.launch(some, first)
-                else:
-                    launch(self.launcher, some, first, results)
+            if here(self.config.hydra):
+                self.launcher.launch(given, 0)
+            else:
+                launch(self.launcher, given, results)
         finally:
             _report(folder, self.task.labels, jobs, results)
         worst = max(result["code"] for result in results.values())

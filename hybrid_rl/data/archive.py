@@ -9,9 +9,7 @@ repository come with the installed package: a relative path that does not exist 
 directory is searched there.
 """
 
-import math
-import zipfile
-from collections.abc import Container, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -31,8 +29,6 @@ ABOUT = "about"
 PARTS = ("policy", "model", "reward_model", "critic")  # whose parameters a policy's file may hold
 WRITE = "`python -m hybrid_rl.demonstrate run=DIR policy=FILE` writes one"
 WORDS = ("task", ABOUT)  # arrays that hold text
-SMALL, RATIO = 2**26, 100  # [bytes] of all arrays that any file may hold; bytes of one on the disk
-HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
 
 
 def write(file: Path | str, task: str, spec: Spec, arrays: Mapping[str, np.ndarray]) -> None:
@@ -74,11 +70,11 @@ def read(
     if not path.is_file():
         raise ValueError(f"{prefix} no such file{hint and '; '}{hint}")
     try:
-        arrays = _arrays(path, (*needed, *header, ABOUT) if needed else None)
+        with np.load(path) as data:
+            names = {*data.files} & {*needed, *header, ABOUT} if needed else data.files
+            arrays = {name: data[name] for name in names}
     except Exception as error:  # whatever NumPy makes of damaged bytes
         raise ValueError(f"{prefix} is damaged, cut short, or no .npz file") from error
-    if arrays is None:
-        raise ValueError(f"{prefix} would need {RATIO} times its size in memory")
     if missing := [name for name in (*needed, *header) if name not in arrays]:
         raise ValueError(f"{prefix} lacks {', '.join(missing)}")
     for name, array in arrays.items():
@@ -87,33 +83,6 @@ def read(
     if header:
         _check_header(prefix, arrays)
     return arrays
-
-
-def _arrays(path: Path, wanted: Container[str] | None) -> dict[str, np.ndarray] | None:
-    """The wanted arrays of a file, None: all; None if they would be much larger than the file.
-
-    Raises an error of any kind for a damaged file. Sizes are compared before memory is taken.
-    """
-    with zipfile.ZipFile(path) as file:
-        members = {each.filename.removesuffix(".npy"): each for each in file.infolist()}
-        if len(members) < len(file.infolist()):
-            raise ValueError("a name occurs twice")
-        kept = {n: each for n, each in members.items() if wanted is None or n in wanted}
-        most = max(SMALL, RATIO * path.stat().st_size)
-        if sum(each.file_size for each in kept.values()) > most:
-            return None
-        return {name: _array(file, each) for name, each in kept.items()}
-
-
-def _array(file: zipfile.ZipFile, member: zipfile.ZipInfo) -> np.ndarray:
-    """One array, whose header must tell the size that the file has."""
-    with file.open(member) as data:
-        shape, _, dtype = HEADERS[np.lib.format.read_magic(data)](data)
-        size = data.tell() + math.prod(shape) * dtype.itemsize
-    if dtype.hasobject or min(shape, default=0) < 0 or size != member.file_size:
-        raise ValueError("its header does not fit")
-    with file.open(member) as data:
-        return np.lib.format.read_array(data, allow_pickle=False)
 
 
 def _check_header(prefix: str, arrays: Mapping[str, np.ndarray]) -> None:

@@ -66,6 +66,12 @@ def replacing(path: Path) -> Iterator[Path]:
         sync(path.parent)
 
 
+def write_text(path: Path, text: str) -> None:
+    """Replace the text of a file; a reader sees the old or the new text, never a part."""
+    with replacing(path) as draft, draft.open("x", encoding="utf-8") as file:
+        file.write(text)
+
+
 def sync(path: Path) -> None:
     """Force a file, or the entries of a folder, to the disk."""
     handle = os.open(path, os.O_RDONLY)

@@ -14,6 +14,7 @@ from omegaconf import OmegaConf
 
 from hybrid_rl.envs.adapters.external import check_world
 from hybrid_rl.errors import UsageError
+from hybrid_rl.files.reading import yaml_file
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.settings.build import Run
@@ -93,7 +94,7 @@ def _described(agent: Agent, name: str | None) -> dict[str, Any]:
 def _check_same(run: Run, folder: Path) -> tuple[str, ...]:
     """A note if the agent is not the one that config.yaml describes."""
     path, flaw = folder / "config.yaml", ""
-    config: Any = OmegaConf.load(path) if path.exists() else {}
+    config = yaml_file(path) if path.exists() else {}
     made = max(checkpoint.steps(folder / "checkpoints"))
     saved = tuple(checkpoint.meta(folder / "checkpoints").get("seeds", ()))
     if "agent" not in config:
@@ -104,5 +105,5 @@ def _check_same(run: Run, folder: Path) -> tuple[str, ...]:
         flaw = f"holds the learners of seed {', '.join(map(str, saved))}; give these"
     if flaw:
         raise UsageError(f"run_dir={folder}: {flaw}")
-    then, now = (re.sub(" at 0x[0-9a-f]+", "", each.agent) for each in (config, run.config))
+    then, now = (re.sub(" at 0x[0-9a-f]+", "", each["agent"]) for each in (config, run.config))
     return ("goes on with another agent than before",) if then != now else ()

@@ -7,51 +7,24 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from hybrid_rl.run.checkpoints.store import End, Shelf
+from hybrid_rl.run.checkpoints.store import End
 from hybrid_rl.training.loop import Loop
 
 
-class Diverged:
-    """The learners of `loop` that have ended.
+def new_ends(
+    loop: Loop, known: Mapping[int, End], failures: Mapping[int, tuple[int, str]]
+) -> dict[int, End]:
+    """The ends, by the learner's number, that are not yet `known`.
 
-    The program computes all learners together, so one that has ended is still computed; `repaired`
-    gives it the state of its last sound checkpoint, or its initial state.
+    failures: learner -> (step, quantity).
     """
-
-    def __init__(self, loop: Loop, shelf: Shelf) -> None:
-        self.loop, self.shelf = loop, shelf
-        self.ends: dict[int, End] = {}  # by the learner's number
-        self._sound: dict[int, Any] = {}  # the state that replaces its own
-
-    @property
-    def steps(self) -> dict[int, int]:
-        """Learner -> the step at which it ended."""
-        return {s: end["step"] for s, end in self.ends.items()}
-
-    @property
-    def left(self) -> int:
-        """Learners that continue."""
-        return len(self.loop.seeds) - len(self.ends)
-
-    def add(self, failures: Mapping[int, tuple[int, str]]) -> dict[int, End]:
-        """The new ends; failures: learner -> (step, quantity)."""
-        new, axis, seeds = {}, self.loop.axis, self.loop.seeds
-        for s, (step, quantity) in sorted(failures.items()):
-            if s in self.ends:
-                continue
-            new[s] = {"seed": seeds[s], "step": step, "quantity": quantity}
-            if numbers := axis.names[s * axis.count // len(seeds)]:  # where there are others
-                new[s]["of"] = numbers
-        self.ends |= new
-        return new
-
-    def repaired(self, state: Any) -> Any:
-        """`state`, whose buffers are reused, with sound values for learners that have ended."""
-        for s in self.ends:
-            if s not in self._sound:
-                self._sound[s] = self.shelf.learner(s)
-            state = self.loop.with_learner(state, s, self._sound[s])
-        return state
+    new: dict[int, End] = {}
+    for s, (step, quantity) in sorted(failures.items()):
+        if s not in known:
+            new[s] = {"seed": loop.seeds[s], "step": step, "quantity": quantity}
+            if numbers := loop.axis.names[s * loop.axis.count // len(loop.seeds)]:
+                new[s]["of"] = numbers  # where there are others
+    return new
 
 
 def unsound(learners: Any, step: int) -> dict[int, tuple[int, str]]:
@@ -66,9 +39,9 @@ def unsound(learners: Any, step: int) -> dict[int, tuple[int, str]]:
     return failures
 
 
-def note(end: End, left: int) -> str:
-    """A line for a learner that ended while `left` others continue."""
-    return f"{_words(end)}; it ends here, {_others(left)} continue{'s' if left == 1 else ''}"
+def note(end: End) -> str:
+    """A line for a learner that ended while others continue."""
+    return f"{_words(end)}; it ends here, the others continue"
 
 
 def line(ends: Sequence[End], left: int, checkpoint: int | None) -> str:
@@ -78,15 +51,11 @@ def line(ends: Sequence[End], left: int, checkpoint: int | None) -> str:
     """
     words = "; ".join(map(_words, ends))
     if left:
-        return f"{words}; {_others(left)} went on to the end"
+        return f"{words}; the others went on to the end"
     if checkpoint is None:
         return f"{words}; there is no checkpoint"
     mend = "fix what fails and resume it, or begin again with a lower learning rate"
     return f"{words}; checkpoint {checkpoint} is intact: {mend}"
-
-
-def _others(count: int) -> str:
-    return "the other learner" if count == 1 else f"the other {count} learners"
 
 
 def _words(end: End) -> str:

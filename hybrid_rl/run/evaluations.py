@@ -1,21 +1,29 @@
-"""Evaluations of a run: all learners, in every mode, in calls short enough to react to a signal."""
+"""Evaluations of all learners, in training and of a run that is read back: the same episodes.
+
+A call takes a few seconds at most, so that a signal is heard between two calls.
+"""
 
 from collections.abc import Callable, Mapping
 from functools import partial
+from itertools import count
 from time import perf_counter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.outside.host_loop import HostEvaluator, HostLoop
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run.schedule import Pace
 from hybrid_rl.training.loop import REPLICATED, SEEDS, Loop, compile_lowered
 from hybrid_rl.training.rollout import advance, begin, evaluation_keys, scores
 from hybrid_rl.types import Params
+
+if TYPE_CHECKING:
+    from hybrid_rl.run.saved import Trained
 
 EVALUATED = {  # mode -> what its outcomes' names begin with
     "full": "eval/",
@@ -105,3 +113,51 @@ def finish_episodes(
         pace.took(rounds, perf_counter() - began)
         made += rounds
     return {name: np.asarray(value) for name, value in scores(carry[0]).items()}
+
+
+def evaluate(
+    trained: "Trained",
+    mode: str = "full",
+    episodes: int = 10,
+    on_decisions: Callable[[int], bool | None] = lambda made: None,
+) -> dict[str, np.ndarray]:
+    """Undiscounted `return` [S, episodes] of the same episodes as in training.
+
+    If the task measures it, also `success` [S, episodes], 0 or 1; with a constraint also
+    `violations` [S, episodes], in decisions. on_decisions: is called now and then with the number
+    of decisions that every episode has made; once it returns True, there is no result, {}.
+
+    Raises:
+        UsageError: for a mode that the method does not have.
+    """
+    episode, (controller, _) = trained.episode, trained.learner(mode=mode, world=True)
+    keys = jnp.stack([evaluation_keys(seed, episodes) for seed in trained.seeds])
+    if isinstance(episode.env, External):
+        decisions = count()
+        got = HostEvaluator(episode, controller, trained.params, keys)(
+            trained.params, keys, lambda: bool(on_decisions(next(decisions)))
+        )
+        return got or {}
+    first = jax.jit(jax.vmap(partial(begin, episode, controller)))
+    more = jax.vmap(partial(advance, episode, controller), (0, 0, None))
+    more = partial(jax.jit(more, donate_argnums=1), trained.params)
+    return finish_episodes(first(keys), more, episode.steps, on_decisions) or {}
+
+
+def report(trained: "Trained", mode: str, got: dict[str, np.ndarray]) -> dict[str, Any]:
+    """What evaluation_<mode>.json holds."""
+    more, returns = {}, got["return"]
+    if (success := got.get("success")) is not None:
+        more = {"success": success.mean(1).tolist(), "succeeded": success.astype(bool).tolist()}
+    if (number := got.get("violations")) is not None:
+        more |= {"violations": number.mean(1).tolist(), "violated": number.astype(int).tolist()}
+    return {
+        "mode": mode,
+        "step": trained.step,
+        "seeds": list(trained.seeds),
+        "episodes": returns.shape[1],
+        "mean": returns.mean(1).tolist(),
+        "std": returns.std(1).tolist(),
+        **more,
+        "returns": returns.tolist(),
+    }

@@ -6,27 +6,25 @@ overrides. A part that occurs several times, such as a model that both the plann
 have, is written once and referenced by a YAML anchor.
 """
 
-import io
+import itertools
 import json
 import shlex
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from datetime import datetime
-from itertools import chain
 from pathlib import Path
 from typing import Any
 
+import yaml
 from omegaconf import DictConfig, OmegaConf, open_dict
 from omegaconf.errors import ConfigAttributeError, ConfigKeyError, OmegaConfBaseException
 
 from hybrid_rl.errors import MisfitError, PartError, UsageError, printable
 from hybrid_rl.files import targets as parts
+from hybrid_rl.files.atomic import write_text
+from hybrid_rl.files.lock import lock
+from hybrid_rl.files.reading import json_file, yaml_file
 from hybrid_rl.run.checkpoints import checkpoint
-from hybrid_rl.run.files.anchors import as_yaml
-from hybrid_rl.run.files.integrity import write_text
-from hybrid_rl.run.files.lock import lock
-from hybrid_rl.run.files.reading import json_file, yaml_file
-from hybrid_rl.run.logs.records import summary_of
 from hybrid_rl.settings.build import CONF
 from hybrid_rl.settings.values import COUNTS, SECTIONS, check_words
 from hybrid_rl.settings.words import quoted
@@ -34,72 +32,36 @@ from hybrid_rl.version import __version__
 
 FIRST = "0.2"  # version that writes its number to config.yaml
 SWEEP = "sweep.json"  # in the folder of runs that one program trains (hybrid_rl.run.members)
-NO_CHECKPOINT = "holds a run without a checkpoint; delete it, or choose another"
 
 
 @contextmanager
-def claim_folders(
-    configs: Sequence[DictConfig], columns: Mapping[str, Sequence[float]]
-) -> Iterator[list[Path]]:
+def claim_folders(configs: Sequence[DictConfig]) -> Iterator[list[Path]]:
     """New run folders for `configs`, locked by this process until the end of the block.
 
-    One is run_dir; several are 0, 1, ... in it, beside sweep.json with `columns`. If nothing was
-    trained in the block, what it wrote is deleted again, and so are folders that it made.
+    One is run_dir; several are 0, 1, ... in it. What is empty afterwards is deleted again.
     """
     given, several = configs[0].run_dir, len(configs) > 1
     parent = new_folder(configs[0]) if given is None else Path(str(given))
     folders = [parent / str(number) for number in range(len(configs))] if several else [parent]
-    line = f"run_dir={parent}: holds a run already; choose another, or resume={parent}"
     with ExitStack() as stack:
-        if given is None or not parent.exists():
-            stack.callback(_remove_empty, parent)
-        if several:
-            if (parent / SWEEP).exists() or (parent / "config.yaml").exists():
-                raise UsageError(line)
-            stack.callback(_forget, parent, folders, _names(parent))
-        for config, folder in zip(configs if several else (), folders, strict=several):
-            stack.callback(_remove_empty, folder)
-            with open_dict(config):
-                config.run_dir = str(folder)
-        for folder in folders:
+        for folder in dict.fromkeys([parent, *folders]):
+            if given is None or not folder.exists():
+                stack.callback(_remove_empty, folder)
+        for folder, config in zip(folders, configs, strict=True):
+            if several:
+                with open_dict(config):
+                    config.run_dir = str(folder)
             stack.enter_context(lock(folder, "run_dir"))
-            if checkpoint.steps(folder / "checkpoints"):
-                raise UsageError(line)
-            if (folder / "config.yaml").exists() and not rowless(folder):
-                raise UsageError(f"run_dir={folder}: {NO_CHECKPOINT}")
-            stack.callback(_forget, folder, [folder], _names(folder))
-        if several:
-            write_text(parent / SWEEP, json.dumps(columns, indent=1) + "\n")
+        for folder, name in itertools.product([parent, *folders], ("config.yaml", SWEEP)):
+            if (folder / name).exists():
+                line = f"holds a run already; choose another, or resume={parent}"
+                raise UsageError(f"run_dir={parent}: {line}")
         yield folders
-
-
-def _names(folder: Path) -> set[str]:
-    """The names of what a folder holds."""
-    return {path.name for path in folder.iterdir()} if folder.exists() else set()
-
-
-def _forget(folder: Path, runs: Sequence[Path], before: Set[str]) -> None:
-    """Delete what a start has written to a folder that held `before`, unless it trained a run."""
-    if not any(map(_trained, runs)):
-        for name in {"config.yaml", "metrics.jsonl", SWEEP} - before:
-            (folder / name).unlink(missing_ok=True)
 
 
 def _remove_empty(folder: Path) -> None:
     with suppress(OSError):  # it holds something
         folder.rmdir()
-
-
-def _trained(folder: Path) -> bool:
-    """True if a run has written a row or a checkpoint there."""
-    rows = folder / "metrics.jsonl"
-    written = rows.exists() and rows.stat().st_size > 0
-    return written or bool(checkpoint.steps(folder / "checkpoints"))
-
-
-def rowless(folder: Path) -> bool:
-    """True if a run began there and wrote nothing, as when it was stopped while it compiled."""
-    return (folder / "metrics.jsonl").exists() and not _trained(folder)
 
 
 def new_folder(config: DictConfig, suffix: str = "") -> Path:
@@ -121,6 +83,12 @@ def write(folder: Path, config: DictConfig) -> None:
     write_text(folder / "config.yaml", described(config))
 
 
+def write_sweep(folder: Path, values: Sequence[Mapping[str, float]]) -> None:
+    """Write sweep.json of the runs 0, 1, ... in `folder`; values: key -> value, of each."""
+    columns = {key: [own[key] for own in values] for key in values[0]}
+    write_text(folder / SWEEP, json.dumps(columns, indent=1) + "\n")
+
+
 def described(config: DictConfig) -> str:
     """The text of config.yaml of a run with the resolved configuration `config`."""
     single = [k for k, value in config.items() if not isinstance(value, DictConfig)]
@@ -128,6 +96,32 @@ def described(config: DictConfig) -> str:
     values: Any = {key: config[key] for key in order if key not in ("expert", "version")}
     made: Any = OmegaConf.create({"version": __version__} | values | {"resume": None})
     return as_yaml(made)
+
+
+def as_yaml(config: DictConfig) -> str:
+    """`config` as YAML; equal parts are one object, which PyYAML writes once."""
+    first: dict[str, Any] = {}  # a part as text -> its first occurrence
+
+    def share(node: Any) -> Any:
+        if not isinstance(node, dict):
+            return node
+        names = sorted(node, key=lambda name: name != "_target_")  # it comes first
+        node = {name: share(node[name]) for name in names}
+        return first.setdefault(str(node), node) if "_target_" in node else node
+
+    values = share(OmegaConf.to_container(config))
+    return yaml.dump(values, Dumper=_Dumper, sort_keys=False, allow_unicode=True)
+
+
+class _Dumper(yaml.SafeDumper):
+    """Lists on a line."""
+
+    def sequence(self, data: list[Any]) -> yaml.Node:
+        flow = not any(isinstance(value, (dict, list)) for value in data)
+        return self.represent_sequence("tag:yaml.org,2002:seq", data, flow_style=flow)
+
+
+_Dumper.add_representer(list, _Dumper.sequence)
 
 
 def read(folder: Path, key: str) -> DictConfig:
@@ -155,11 +149,11 @@ def read_trained(folder: Path, key: str) -> DictConfig:
     return config
 
 
-def _check_version(folder: Path, key: str, config: DictConfig) -> None:
+def _check_version(folder: Path, key: str, config: Mapping[str, Any]) -> None:
     """Raise UsageError if another minor version made the run."""
     summary = {}
     with suppress(UsageError):
-        summary = summary_of(folder / "summary.json")
+        summary = json_file(folder / "summary.json")
     version = config.get("version") or summary.get("versions", {}).get("hybrid_rl")
     if str(version).split(".")[:2] != __version__.split(".")[:2]:
         commit = summary.get("git_commit")
@@ -169,16 +163,17 @@ def _check_version(folder: Path, key: str, config: DictConfig) -> None:
 
 
 @contextmanager
-def blame_config(folder: Path, lacking: bool = False) -> Iterator[None]:
-    """Errors about the configuration of a run, or just `lacking` keys, name its config.yaml."""
+def blame_config(folder: Path) -> Iterator[None]:
+    """Errors about the configuration of a run name its config.yaml."""
     path = folder / "config.yaml"
     try:
         yield
+    except PartError:  # of a file of the user's own
+        raise
+    except (ConfigKeyError, ConfigAttributeError) as error:
+        raise UsageError(f"{path}: lacks {error.full_key or error.key}") from error
     except (UsageError, MisfitError, OmegaConfBaseException) as error:
-        absent = isinstance(error, ConfigKeyError | ConfigAttributeError)
-        if isinstance(error, PartError) or (lacking and not absent):  # of a file of the user's own
-            raise
-        line = f"lacks {error.full_key or error.key}" if absent else str(error).partition("\n")[0]
+        line = str(error).partition("\n")[0]
         raise UsageError(f"{path}: {line.removeprefix(f'{path}: ')}") from error
 
 
@@ -187,10 +182,7 @@ def members(folder: Path) -> dict[Path, dict[str, float]]:
     if not (folder / SWEEP).exists():
         return {}
     columns = json_file(folder / SWEEP)
-    lists = [column if isinstance(column, list) else [] for column in columns.values()]
-    if any(type(x) not in (int, float) for x in chain(*lists)) or len(set(map(len, lists))) != 1:
-        raise UsageError(f"{folder / SWEEP}: is not what training writes")
-    rows = (dict(zip(columns, row, strict=True)) for row in zip(*lists, strict=True))
+    rows = (dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True))
     return {folder / str(number): row for number, row in enumerate(rows)}
 
 
@@ -213,24 +205,16 @@ def parse_config(folder: Path, key: str = "runs") -> DictConfig:
     """
     path = folder / "config.yaml"
     if not path.exists():
-        raise UsageError(f"{key}={'' if folder == Path() else folder}: {_instead(folder, key)}")
-    config = yaml_file(path, lambda text: OmegaConf.load(io.StringIO(text)))
-    if not isinstance(config, DictConfig) or not config:
-        raise UsageError(f"{path}: is empty, or no group of keys")
+        flaw = "no run folder there (no config.yaml in it)"
+        if runs := members(folder):
+            listed = ", ".join(f"{run} ({words(values)})" for run, values in runs.items())
+            flaw = f"holds a sweep; give one of its runs: {listed}"
+        raise UsageError(f"{key}={folder}: {flaw}")
+    values = yaml_file(path)
     try:
-        values: Any = OmegaConf.to_container(config)
         parts.check({**values, "recipe": str(values.get("recipe"))}, folder)
     except ValueError as error:
-        _check_version(folder, key, config)  # another one may have had such a part
+        _check_version(folder, key, values)  # another one may have had such a part
         raise UsageError(f"{path}: {error}") from error
     defaults: Any = OmegaConf.load(CONF / "train.yaml")
-    config.compile_cache = defaults.compile_cache
-    return config
-
-
-def _instead(folder: Path, key: str) -> str:
-    """The line about a folder without config.yaml, which may hold a sweep."""
-    if runs := members(folder):
-        listed = ", ".join(f"{run} ({words(values)})" for run, values in runs.items())
-        return f"holds a sweep; give one of its runs: {listed}"
-    return "no run folder there (no config.yaml in it)"
+    return OmegaConf.create(values | {"compile_cache": defaults.compile_cache})

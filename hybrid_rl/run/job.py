@@ -1,25 +1,26 @@
-"""A program's runs in their folders: locked, with records and checkpoints, up to summary.json."""
+"""A program's runs in their folders: settings, records and checkpoints, up to summary.json."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig
 
 from hybrid_rl.errors import FAULTS
 from hybrid_rl.files.atomic import naming, refuse_link
 from hybrid_rl.networks import precision
 from hybrid_rl.outside.loops import loop_of
+from hybrid_rl.run import folder
 from hybrid_rl.run.checkpoints.store import Shelf
-from hybrid_rl.run.logs import loggers
 from hybrid_rl.run.logs.log import RunLog
 from hybrid_rl.run.logs.records import Row, flatten_keys
 from hybrid_rl.run.machine import provenance
 from hybrid_rl.run.session import Session
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings.build import Run
+from hybrid_rl.settings.words import plain
 from hybrid_rl.training.axis import Axis
 from hybrid_rl.training.loop import Loop
 
@@ -57,10 +58,11 @@ class Output:
 
 @dataclass(frozen=True)
 class Job:
-    """K runs, their folders, and the numbers in which they differ."""
+    """K runs, their folders, what sets each apart, and the numbers in which they differ."""
 
     runs: Sequence[Run]
     folders: Sequence[Path]
+    values: Sequence[Mapping[str, float]] = ({},)  # [K] key -> value
     axis: Axis = field(default_factory=Axis)
 
     def loop(self) -> Loop:
@@ -80,19 +82,22 @@ class Job:
         """The records, open until the end of `stack`, and the checkpoints."""
         logs, several = [], len(self.runs) > 1
         for run, run_dir in zip(self.runs, self.folders, strict=True):
-            config, more = run.config, {"run_dir": str(run_dir)} if several else {}
-            wandb = loggers.to_wandb(config.get("logger"))
-            settings: Any = OmegaConf.to_container(config)
             stack.enter_context(naming(run_dir))
-            log = RunLog(
-                run_dir, run.seeds, settings, wandb, lambda row, more=more: output(row | more)
-            )
+            more = {"run_dir": str(run_dir)} if several else {}
+            log = RunLog(run_dir, run.seeds, plain(run.config), lambda row, m=more: output(row | m))
             logs.append(stack.enter_context(log))
         folders = [refuse_link(run_dir / "checkpoints") for run_dir in self.folders]
         settings = [written(run.config) for run in self.runs]
         return Shelf(loop, folders, settings, logs, self.runs[0].config.checkpoint_replay)
 
-    def summaries(self, session: Session) -> list[dict[str, Any]]:
+    def write_settings(self) -> None:
+        """Write config.yaml of each run, and sweep.json of several."""
+        for run, run_dir in zip(self.runs, self.folders, strict=True):
+            folder.write(run_dir, run.config)
+        if len(self.runs) > 1:
+            folder.write_sweep(self.whole, self.values)
+
+    def write_summaries(self, session: Session) -> list[dict[str, Any]]:
         """The contents of summary.json of each run, which are written."""
         shelf, summaries = session.shelf, []
         for run, log, share in zip(self.runs, shelf.logs, shelf.shares(), strict=True):
@@ -103,8 +108,8 @@ class Job:
 
 def _summary(config: DictConfig, session: Session, run_dir: Path, share: slice) -> dict[str, Any]:
     """The contents of summary.json of the learners in `share`."""
-    values: Any = OmegaConf.to_container(config)
-    ends, rate = session.diverged.ends, session.record.learning.rate
+    values = plain(config)
+    ends, rate = session.record.ends, session.record.learning.rate
     return {
         "task": config.task,
         "algo": config.algo,
@@ -112,7 +117,7 @@ def _summary(config: DictConfig, session: Session, run_dir: Path, share: slice) 
         "total_steps": session.step,
         "finished": session.finished,
         "final_return": session.final_returns()[share],
-        "final_eval": session.final_evaluations()[share],
+        "final_eval": session.record.final_eval[share],
         "diverged": [end for s, end in ends.items() if share.start <= s < share.stop],
         "wall_s": session.wall_s,
         "compile_s": session.loop.compile_s,
@@ -130,6 +135,5 @@ def _summary(config: DictConfig, session: Session, run_dir: Path, share: slice) 
 
 def written(config: DictConfig) -> dict[str, Any]:
     """The values of config.yaml, by full keys."""
-    values: Any = OmegaConf.to_container(config)
     others = ("expert", "version", "recipe", "config_dir")
-    return flatten_keys({key: value for key, value in values.items() if key not in others})
+    return flatten_keys({key: value for key, value in plain(config).items() if key not in others})

@@ -2,23 +2,23 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack
+from importlib.util import find_spec
 from itertools import cycle
 from pathlib import Path
 from typing import Any
 
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig
 
-from hybrid_rl.errors import FAULTS, DivergenceError, UsageError
+from hybrid_rl.errors import FAULTS, DivergenceError, UsageError, install
 from hybrid_rl.files.atomic import refuse_link
+from hybrid_rl.files.lock import lock
+from hybrid_rl.files.reading import json_file
 from hybrid_rl.networks import precision
 from hybrid_rl.run import folder, start
-from hybrid_rl.run.checkpoints import checkpoint
-from hybrid_rl.run.files import integrity
-from hybrid_rl.run.files.lock import lock
+from hybrid_rl.run.checkpoints import checkpoint, manifest
 from hybrid_rl.run.job import Job, Output, written
-from hybrid_rl.run.logs import loggers
 from hybrid_rl.run.logs.progress import Progress
-from hybrid_rl.run.logs.records import changes, summary_of
+from hybrid_rl.run.logs.records import changes
 from hybrid_rl.run.machine import memory
 from hybrid_rl.run.machine.jax_settings import prepare, refuse_x64
 from hybrid_rl.run.members import Member, axis_of, joined
@@ -48,13 +48,14 @@ def train(
     folder, only total_steps and precision may differ. handled: `handled(f)` is a context in which
     the first signal calls f(number).
     """
-    if members[0].config.resume is not None:
+    first = members[0].config
+    if first.resume is not None:
         return _resume(members, given, handled, output)
     for member in members:
         check(member.config)
-    prepare(members[0].config)  # first: a check of the user's world initialises JAX's devices
+    prepare(first)  # before a check of the user's world initialises JAX's devices
     made = [start.build_new_run(member.config) for member in members]
-    return _begin(members, [run for run, _ in made], handled, output, [first for _, first in made])
+    return _begin(members, [run for run, _ in made], handled, output, [begin for _, begin in made])
 
 
 def train_built(run: Run, handled: Handler, output: Output) -> dict[str, Any]:
@@ -74,12 +75,12 @@ def _begin(
     starts: Sequence[Start | None],
 ) -> dict[str, Any]:
     """Run `runs` in new folders."""
-    axis, first = axis_of([member.values for member in members], runs), start.joined(starts)
+    values = [member.values for member in members]
+    axis, first = axis_of(values, runs), start.joined(starts)
     fits(runs)
-    loggers.to_wandb(members[0].config.get("logger"))
-    columns = {key: [member.values[key] for member in members] for key in members[0].values}
-    with folder.claim_folders([member.config for member in members], columns) as folders:
-        return _run(Job(runs, folders, axis), handled, output, first)
+    _check_logger(members[0].config.get("logger"))
+    with folder.claim_folders([member.config for member in members]) as folders:
+        return _run(Job(runs, folders, values, axis), handled, output, first)
 
 
 def _resume(
@@ -87,27 +88,35 @@ def _resume(
 ) -> dict[str, Any]:
     """Continue the run, or the runs of a sweep, in the folder `resume`, as `train`."""
     parent = Path(str(wanted[0].config.resume))
-    swept = {refuse_link(run_dir): values for run_dir, values in folder.members(parent).items()}
-    values = swept or {parent: {}}
-    typed = zip(values, cycle(wanted), strict=False)  # one, or one for each
-    configs = {run_dir: _settings(member.config, run_dir, given) for run_dir, member in typed}
-    done = [_done(config, run_dir) for run_dir, config in configs.items()]
+    swept = folder.members(parent) or {parent: {}}
+    folders, values = [*map(refuse_link, swept)], [*swept.values()]
+    if len(wanted) not in (1, len(folders)):
+        raise UsageError(f"sweep: resume={parent} has {len(folders)} runs; leave sweep.KEY out")
+    given = {key.removeprefix("sweep."): value for key, value in given.items()}
+    typed = zip(folders, cycle(wanted), strict=False)  # one, or one for each
+    configs = [_settings(member.config, run_dir, given) for run_dir, member in typed]
+    done = [_done(config, run_dir) for config, run_dir in zip(configs, folders, strict=True)]
     if ends := [end for end in done if end is not None and None not in done]:
         if output.progress:
             line = f"already finished ({ends[0]['total_steps']:,} steps)"
             print(f"{parent}: {line}; raise total_steps to continue")
-        return joined([*values], ends) | {"signal": None}
+        return joined(folders, ends) | {"signal": None}
     with ExitStack() as stack:
         runs = []
-        for run_dir, config in configs.items():
+        for config, run_dir in zip(configs, folders, strict=True):
             stack.enter_context(lock(run_dir, "resume"))
             with folder.blame_config(run_dir):
                 check(config)
                 prepare(config)
                 runs.append(configuration.built(config))
             refuse_edits(config, run_dir)  # also those of a process that had it until now
-        axis = axis_of([*values.values()], runs)
-        return _run(Job(runs, [*values], axis), handled, output)
+        return _run(Job(runs, folders, values, axis_of(values, runs)), handled, output)
+
+
+def _check_logger(name: str | None) -> None:
+    """Raise UsageError for a logger that is unknown or not installed."""
+    if one_of("logger", name, (None, "wandb")) is not None and find_spec("wandb") is None:
+        raise UsageError(f"logger=wandb: not installed; {install('wandb')}")
 
 
 def fits(runs: Sequence[Run]) -> str:
@@ -130,9 +139,8 @@ def _run(job: Job, handled: Handler, output: Output, first: Start | None = None)
         else:
             with folder.blame_config(job.folders[0]):
                 session.resume()
-        for own, run_dir in zip(job.runs, job.folders, strict=True):
-            folder.write(run_dir, own.config)  # also of a resumed run, which may be longer now
-        session.compile()
+        session.compile()  # before anything is written: a start that fails leaves nothing
+        job.write_settings()  # also of a resumed run, which may be longer now
         output.ask = session.ask
         with handled(session.ask):
             try:
@@ -140,7 +148,7 @@ def _run(job: Job, handled: Handler, output: Output, first: Start | None = None)
                 if loop.fault is not None:
                     raise loop.fault
             except DivergenceError:
-                job.summaries(session)
+                job.write_summaries(session)
                 raise
             except FAULTS:  # of the user's world, or of the disk
                 if session.shelf.newest is not None and "agent" not in config:
@@ -148,21 +156,16 @@ def _run(job: Job, handled: Handler, output: Output, first: Start | None = None)
                 raise
             finally:
                 loop.close()
-            return joined(job.folders, job.summaries(session))
+            return joined(job.folders, job.write_summaries(session))
 
 
 def _notes(job: Job) -> list[str]:
     """Lines about a program that begins."""
     run, config = job.runs[0], job.runs[0].config
-    notes = [
-        f"{config.task} {config.algo}{name and ' '}{name}: run folder {run_dir}"
-        for run_dir, name in zip(job.folders, job.axis.names, strict=True)
-    ]
-    notes += [fits(job.runs), *run.notes]
-    if config.physics != "auto" and configuration.physics(config) is None:
-        line = f"has no effect; task={config.task} is not simulated by hybrid_rl.envs.mujoco"
-        notes.append(f"physics={config.physics}: {line}")
-    return notes
+    named = zip(job.folders, job.axis.names, strict=True)
+    start = f"{config.task} {config.algo}"
+    folders = [f"{start}{name and ' '}{name}: run folder {run_dir}" for run_dir, name in named]
+    return [*folders, fits(job.runs), *run.notes]
 
 
 def _settings(config: DictConfig, run_dir: Path, given: Mapping[str, str]) -> DictConfig:
@@ -171,13 +174,11 @@ def _settings(config: DictConfig, run_dir: Path, given: Mapping[str, str]) -> Di
     config: what the user's command composes, which may be that of the run again.
     """
     old = folder.read_trained(run_dir, "resume")
-    typed = {key.removeprefix("sweep."): value for key, value in given.items() if key not in FREE}
-    pairs = {key: [OmegaConf.select(made, key) for made in (old, config)] for key in typed}
-    differ = [key for key, (then, now) in pairs.items() if then != now]
-    if not differ and not _same(old, config):
-        differ = [key for key, pair in pairs.items() if pair == [None, None]]  # such as settings
-    if differ:
-        raise UsageError(f"{differ[0]}={typed[differ[0]]}: {ONLY}; resume={run_dir} has its own")
+    typed = [key for key in given if key not in FREE]
+    if typed and (changed := _changes(written(old), written(config))):
+        differ = [key for key in typed if any(line.startswith(f"{key} ") for line in changed)]
+        key = (differ or typed)[0]
+        raise UsageError(f"{key}={given[key]}: {ONLY}; resume={run_dir} has its own")
     if "total_steps" in given:
         steps = whole("total_steps", config.total_steps)
         if steps < whole("total_steps", old.total_steps):
@@ -194,29 +195,27 @@ def refuse_edits(config: DictConfig, run_dir: Path) -> None:
     """Raise UsageError if config.yaml is not what the newest checkpoint was trained with."""
     now = written(config)
     then = checkpoint.meta(run_dir / "checkpoints").get("settings", now)  # none may be readable
-    lowered = now["total_steps"] < then["total_steps"]  # its memory would not fit
-    for key in {*OF_A_SESSION} - ({"total_steps"} if lowered else set()):
-        now.pop(key, None)
-        then.pop(key, None)
-    if changed := changes(then, now):
+    if changed := _changes(then, now):
         raise UsageError(f"{run_dir / 'config.yaml'}: {', '.join(changed)}; put it back: {ONLY}")
 
 
-def _same(old: DictConfig, config: DictConfig) -> bool:
-    """True if the whole configuration that the user gave is that of the run."""
-    free = (*OF_A_SESSION, "random_steps")  # which may follow from total_steps
-    return all(old[key] == config[key] for key in old if key in config and key not in free)
+def _changes(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
+    """Lines about the settings that differ, of those that stay for the whole run.
+
+    random_steps may follow from total_steps.
+    """
+    free = (*OF_A_SESSION, "random_steps")
+    return changes(*({k: v for k, v in each.items() if k not in free} for each in (then, now)))
 
 
 def _done(config: DictConfig, run_dir: Path) -> dict[str, Any] | None:
     """summary.json of a run that has reached its end and has a checkpoint there; None else."""
-    try:
-        summary = summary_of(run_dir / "summary.json") | {"run_dir": str(run_dir)}
-        done = summary["finished"] and summary["total_steps"] >= config.total_steps
-        newest = run_dir / "checkpoints" / str(summary["total_steps"])
-    except (OSError, ValueError, KeyError, TypeError):
+    file = run_dir / "summary.json"
+    summary = json_file(file) if file.exists() else {"finished": False}
+    if not summary["finished"] or summary["total_steps"] < config.total_steps:
         return None
-    return summary if done and integrity.verify(newest) is None else None
+    newest = run_dir / "checkpoints" / str(summary["total_steps"])
+    return summary | {"run_dir": str(run_dir)} if manifest.verify(newest) is None else None
 
 
 def _progress(run: Run, visible: bool) -> Progress:

@@ -62,11 +62,6 @@ def expand_sweep(config: DictConfig, texts: Sequence[str]) -> list[Member]:
         for key, value in chosen.items():
             OmegaConf.update(own, source(raw, key), value)
         members.append(Member(configuration.resolve(own, [*texts, *typed]), chosen))
-    if len(members) > 1 and config.get("resume") is not None:
-        before = [*folder.members(Path(str(config.resume))).values()]
-        if before != [member.values for member in members]:
-            has = ", ".join(map(folder.words, before)) or "no sweep"
-            raise UsageError(f"sweep: resume={config.resume} has {has}; leave sweep.KEY out")
     return members
 
 
@@ -114,10 +109,11 @@ def _refused(
     """The error of a key whose values change what is at `path`."""
     last = path.rpartition(".")[2]
     keys = [key for key in values[0] if key.rpartition(".")[2] == last] or [*values[0]]
-    pairs = [(key, ",".join(map(str, dict.fromkeys(own[key] for own in values)))) for key in keys]
-    typed = ", ".join(f"sweep.{key}=[{listed}]" for key, listed in pairs)
-    instead = " ".join(f"{key}={listed}" for key, listed in pairs)
-    return UsageError(f"{typed}: one program cannot have several, as {why}; use -m {instead}")
+    words = [
+        f"{key}={','.join(map(str, dict.fromkeys(own[key] for own in values)))}" for key in keys
+    ]
+    line = f"one program cannot have several, as {why}; use -m {' '.join(words)}"
+    return UsageError(f"sweep.{words[0]}: {line}")
 
 
 def joined(folders: Sequence[Path], summaries: Sequence[dict[str, Any]]) -> dict[str, Any]:

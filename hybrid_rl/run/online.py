@@ -27,15 +27,14 @@ from omegaconf import DictConfig
 
 from hybrid_rl.envs.adapters.robot import PENDING, Outside
 from hybrid_rl.errors import DivergenceError, UsageError
+from hybrid_rl.files.lock import lock
 from hybrid_rl.outside.acting import Exploring, numbers
 from hybrid_rl.outside.learner import RowLearner, RowLoop
 from hybrid_rl.outside.row_log import row_type
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.checkpoints.store import Record, Shelf
-from hybrid_rl.run.files.lock import lock
 from hybrid_rl.run.job import written
 from hybrid_rl.run.launch import fits, refuse_edits
-from hybrid_rl.run.logs.rows import Gathered
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings.values import check
@@ -234,7 +233,7 @@ class OnlineLearner:
             self._advance()
         with _writable(folder) as path, self._lock:
             shelf = Shelf(self._loop, [path / "checkpoints"], [written(self.config)])
-            shelf.save(learner.state, Gathered(), Record([[]], [None], step=learner.read))
+            shelf.save(learner.state, {}, Record([[]], [None], step=learner.read))
             run_folder.write(path, self.config)
 
     @classmethod
@@ -252,7 +251,7 @@ class OnlineLearner:
         learner = cls(config, learn=learn)
         learner.close()
         shelf = Shelf(learner._loop, [Path(folder) / "checkpoints"], [{}])
-        learner._learner.state, _, record, *_ = shelf.restore()
+        learner._learner.state, _, record, _ = shelf.restore()
         learner._start(record.step)
         return learner
 

@@ -14,9 +14,8 @@ from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.core.lifting import is_identity
 from hybrid_rl.data.trained import save
 from hybrid_rl.errors import UsageError
+from hybrid_rl.files.reading import json_file
 from hybrid_rl.protocols import Controller
-from hybrid_rl.run.files.reading import json_file
-from hybrid_rl.run.logs.records import summary_of
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.run.saved import OBJECTIVES, Trained, load
 from hybrid_rl.settings import build as configuration
@@ -143,7 +142,7 @@ def _description(folder: Path, trained: Trained, command: str, seed: int) -> dic
         if node is not None:
             parts[name] = _anywhere(OmegaConf.to_container(node))
     file = folder / "summary.json"
-    summary = summary_of(file) if file.exists() else {}
+    summary = json_file(file) if file.exists() else {}
     return {
         **parts,
         **{"algo": config.algo, "seed": seed, "step": trained.step, "command": command},
@@ -157,8 +156,4 @@ def _evaluation(folder: Path, step: int, number: int) -> dict[str, Any] | None:
     file = folder / "evaluation_policy.json"
     if not file.exists() or (values := json_file(file)).get("step") != step:
         return None
-    try:
-        mean, returns = values["mean"][number], values["returns"][number]
-        return {"mean": float(mean), "returns": list(map(float, returns))}
-    except (TypeError, ValueError, LookupError) as error:
-        raise UsageError(f"{file}: is no evaluation that `evaluate` wrote") from error
+    return {"mean": values["mean"][number], "returns": values["returns"][number]}

@@ -10,8 +10,8 @@ policy and, if there are such, the reward and the constraint, as in config.yaml 
 the command, the seed and the evaluation.
 """
 
+import json
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -32,7 +32,6 @@ from hybrid_rl.outside.acting import TrainedPolicy
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.checkpoints.store import read_part
-from hybrid_rl.run.files.reading import from_json
 from hybrid_rl.run.logs.progress import say
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.settings import build as configuration
@@ -43,7 +42,7 @@ from hybrid_rl.training.contract import needs_world
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Params
 
-PARTS, COUNTS = ("env", "episode", "policy"), ("seed", "step")  # of `about`
+DESCRIBED = ("env", "episode", "policy", "seed", "step")  # keys of every `about`
 OBJECTIVES = ("objective", "model_objective")  # with a critic, and without
 ACTING = ("episode", "policy", "model", "reward_model", *OBJECTIVES)  # of `about`, to plan with
 UNFIT = (TypeError, AttributeError, LookupError, ArithmeticError, AssertionError, RecursionError)
@@ -186,7 +185,7 @@ def read(name: str) -> Trained:
     prefix, known = f"policy={name}:", f"choose a file, or one of {', '.join(names())}"
     try:
         arrays = archive.read(prefix, file, hint=known)
-        about = _described(str(arrays.get(archive.ABOUT, "")), archive.find(file))
+        about = _described(str(arrays.get(archive.ABOUT, "{}")), archive.find(file))
         prepare(configuration.load([]))
         return _trained(prefix, str(file), str(arrays["task"]), about)
     except (ValueError, *UNFIT) as error:
@@ -237,23 +236,17 @@ def _models(prefix: str, file: str, task: str, env: Any, about: dict[str, Any]) 
 
 def _described(text: str, file: Path) -> dict[str, Any]:
     """`about` of a file, whose names are judged."""
-    about: Any = None
-    with suppress(ValueError):
-        about = from_json(text)
-    known = about if isinstance(about, dict) else {}
-    kinds = {**dict.fromkeys(PARTS, dict), **dict.fromkeys(COUNTS, int)}
-    if wrong := [key for key, kind in kinds.items() if type(known.get(key)) is not kind]:
-        raise ValueError(f"its description lacks {', '.join(wrong)}, or is damaged there")
-    parts.check({**known, "command": ""}, file)  # which is only shown
-    return known
+    about = json.loads(text)
+    if lacking := [key for key in DESCRIBED if key not in about]:
+        raise ValueError(f"its description lacks {', '.join(lacking)}")
+    parts.check({**about, "command": ""}, file)  # which is only shown
+    return about
 
 
 def _origin(about: Mapping[str, Any]) -> list[str]:
     """Lines about how a policy was made."""
-    lines = []
-    if about.get("command"):
-        lines.append(f"trained by: {printable(about['command'])}")
-    match about.get("evaluation"):
-        case {"mean": int() | float() as mean, "returns": list() as returns}:
-            lines.append(f"evaluated then: {mean:,.1f} (mean of {len(returns)} episodes)")
+    lines = [f"trained by: {printable(about['command'])}"] if about.get("command") else []
+    if evaluation := about.get("evaluation"):
+        count = len(evaluation["returns"])
+        lines.append(f"evaluated then: {evaluation['mean']:,.1f} (mean of {count} episodes)")
     return lines

@@ -9,7 +9,6 @@ uninterrupted one.
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from time import monotonic, perf_counter
-from types import MappingProxyType
 from typing import Any
 
 import jax
@@ -20,7 +19,6 @@ from hybrid_rl.errors import DivergenceError
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run import divergence
 from hybrid_rl.run.checkpoints.store import Record, Shelf
-from hybrid_rl.run.divergence import Diverged
 from hybrid_rl.run.evaluations import EVALUATED, Evaluations
 from hybrid_rl.run.logs import rows
 from hybrid_rl.run.logs.progress import Progress
@@ -30,7 +28,6 @@ from hybrid_rl.run.schedule import Pace, Schedule, Speed
 from hybrid_rl.run.start import Start
 from hybrid_rl.training.loop import Loop
 
-NOTHING: Mapping[str, float] = MappingProxyType({})
 RETURNS = [f"{prefix}return" for prefix in EVALUATED.values()]  # the first of them is the result
 
 
@@ -47,22 +44,27 @@ class Session:
     began: float = field(default_factory=monotonic)
     stop: int | None = None  # the signal that asked for an end; 0: the program did
     saved: tuple[int, bool] | None = None  # step and `unevaluated` of the newest checkpoint
-    gathered: rows.Gathered = field(default_factory=rows.Gathered)  # since the last row of means
+    gathered: rows.Metrics = field(default_factory=dict)  # since the last row of means
     recent: Speed = field(default_factory=Speed)  # since then
     pace: Pace = field(default_factory=Pace)
     program: Any = None  # compiled
     evaluations: Evaluations | None = None  # compiled
 
     def __post_init__(self) -> None:
-        """Create the record, and the list of learners that diverged."""
+        """Create the record."""
         seeds = self.loop.seeds
         self.record = Record([[] for _ in seeds], [None for _ in seeds])
-        self.diverged = Diverged(self.loop, self.shelf)
+        self._sound: dict[int, Any] = {}  # the states that replace those of learners that diverged
 
     @property
     def step(self) -> int:
         """Decisions of each learner."""
         return self.record.step
+
+    @property
+    def left(self) -> int:
+        """Learners that continue."""
+        return len(self.loop.seeds) - len(self.record.ends)
 
     @property
     def wall_s(self) -> float:
@@ -85,13 +87,12 @@ class Session:
 
     def resume(self) -> None:
         """Start from the newest sound checkpoint."""
-        self.state, self.gathered, self.record, ends, notes = self.shelf.restore()
+        self.state, self.gathered, self.record, notes = self.shelf.restore()
         self.progress.update(self.step, {}, say=False)
         if not self.schedule.checkpoint_replay:
             self.loop.agent = replace(self.loop.agent, first_update=self.step)
             notes += ["no replay memory in checkpoints: it continues, but not bit for bit"]
         self.saved = self.step, self.record.unevaluated
-        self.diverged.ends = ends
         for note in (*notes, *self.loop.notes):
             self.progress.note(note)
         self.progress.note(f"continuing from step {self.step:,}")
@@ -153,11 +154,11 @@ class Session:
             self.pace = Pace()
         if start >= max(changes):
             for speed in (self.recent, self.record.learning):
-                speed.add(rounds * worlds * self.diverged.left, took)
+                speed.add(rounds * worlds * self.left, took)
         self._record(metrics, start)
         due = plan.due(plan.eval_every, self.step, worlds)
         self.record.unevaluated = bool(plan.eval_modes) and due
-        self._show(say=False if self.record.unevaluated else None)
+        self._show({}, say=False if self.record.unevaluated else None)
 
     def _record(self, metrics: rows.Metrics, start: int) -> None:
         """Write the rows that follow from the rounds after `start`."""
@@ -166,16 +167,17 @@ class Session:
         if jax.config.jax_debug_nans:
             infinite = divergence.unsound(self.state.learners, self.step) | infinite
         ended = self._end(infinite)
-        episodes = rows.episodes(metrics, start, worlds, self.diverged.steps)
+        episodes = rows.episodes(metrics, start, worlds, self.record.ends)
         for row in episodes:
             pair = (row["step"], float(row["train/return"]))
             self.record.returns[row["learner"]].append(pair)
         self._write(sorted(episodes + ended, key=lambda row: (row["step"], row["learner"])))
         self._continue(bool(infinite))
-        self.gathered.add(metrics)
+        self.gathered = rows.appended(self.gathered, metrics)
         if self.schedule.row_due(self.step, worlds):
             learners = len(self.loop.seeds)
-            means = rows.means(self.gathered.take(), learners, self.step, self.diverged.ends)
+            means = rows.means(self.gathered, learners, self.step, self.record.ends)
+            self.gathered = {}
             perf = {"perf/compile_s": self.loop.compile_s} | self._speed(len(self.shelf.logs))
             self._write([row | perf for row in means])
 
@@ -203,7 +205,7 @@ class Session:
             if not np.isfinite(outcome[name])
         }
         ended = self._end(infinite)
-        left = {s: o for s, o in enumerate(outcomes) if s not in self.diverged.ends}
+        left = {s: o for s, o in enumerate(outcomes) if s not in self.record.ends}
         rows_left = [{"step": self.step, "learner": s} | each for s, each in left.items()]
         self._write(sorted(rows_left + ended, key=lambda row: row["learner"]))
         self._continue(bool(ended))
@@ -215,22 +217,30 @@ class Session:
 
     def _end(self, failures: Mapping[int, tuple[int, str]]) -> list[Row]:
         """A row for each learner that diverged just now; failures: learner -> (step, quantity)."""
-        new = self.diverged.add(failures)
-        if left := self.diverged.left:  # else the error names it
-            for end in new.values():
-                self.progress.note(divergence.note(end, left))
+        new = divergence.new_ends(self.loop, self.record.ends, failures)
+        self.record.ends |= new
+        for s, end in new.items():
+            self.record.final_eval[s] = None
+            if self.left:  # else the error names it
+                self.progress.note(divergence.note(end))
         return [
             {"step": end["step"], "learner": s, "diverged": end["quantity"]}
             for s, end in new.items()
         ]
 
     def _continue(self, repair: bool) -> None:
-        """Raise DivergenceError if no learner is left; repair those that have ended."""
-        if not self.diverged.left:
-            ends = list(self.diverged.ends.values())
+        """Raise DivergenceError if no learner is left; `repair` those that have ended.
+
+        The program computes all learners together, so one that has ended is still computed, from
+        the state of its last sound checkpoint, or its initial state.
+        """
+        if not self.left:
+            ends = list(self.record.ends.values())
             raise DivergenceError(divergence.line(ends, 0, self.shelf.newest))
-        if repair:
-            self.state = self.diverged.repaired(self.state)
+        for s in self.record.ends if repair else ():
+            if s not in self._sound:
+                self._sound[s] = self.shelf.learner(s)
+            self.state = self.loop.with_learner(self.state, s, self._sound[s])
 
     def _save(self) -> None:
         """Write a checkpoint."""
@@ -238,15 +248,15 @@ class Session:
         self._continue(True)
         now = replace(self.record, wall_s=self.wall_s)
         with self.progress.doing("saving"):
-            self.shelf.save(self.state, self.gathered, now, self.diverged.ends)
+            self.shelf.save(self.state, self.gathered, now)
         self.saved = self.step, self.record.unevaluated
 
     def _write(self, new: list[Row]) -> None:
         self.shelf.write(new, self.wall_s)
 
-    def _show(self, scalars: Mapping[str, float] = NOTHING, say: bool | None = None) -> None:
+    def _show(self, scalars: Mapping[str, float], say: bool | None) -> None:
         newest = [
-            p[-1][1] for s, p in enumerate(self.record.returns) if p and s not in self.diverged.ends
+            p[-1][1] for s, p in enumerate(self.record.returns) if p and s not in self.record.ends
         ]
         shown = {"train/return": float(np.mean(newest))} if newest else {}
         self.progress.update(self.step, {**shown, **self._speed(), **scalars}, say)
@@ -257,12 +267,6 @@ class Session:
         means = []
         for s, pairs in enumerate(self.record.returns):
             values = [value for at, value in pairs if at > tail] or [v for _, v in pairs[-1:]]
-            known = values and s not in self.diverged.ends
+            known = values and s not in self.record.ends
             means.append(float(np.mean(values)) if known else None)
         return means
-
-    def final_evaluations(self) -> list[float | None]:
-        """Last evaluation per seed, of mode full if it was evaluated; None if it diverged."""
-        return [
-            v if s not in self.diverged.ends else None for s, v in enumerate(self.record.final_eval)
-        ]

@@ -41,53 +41,38 @@ RELABELLED = ", with the rewards that they earn now"
 
 def add_recipe(texts: Sequence[str], config_dir: str | Path | None = None) -> list[str]:
     """The words of a command, with those of the run in run=DIR before them."""
-    named = [text for text in texts if text.startswith("run=") and text != "run=null"]
-    if not named:
-        return [*texts]
     given = overrides.typed_values(texts)
+    if given.get("run", "null") == "null":
+        return [*texts]
     if given.get("resume", "null") != "null":
         raise UsageError(
             "run, resume: give one of them; run=DIR begins a new run with what DIR has learned, "
             "resume=DIR continues DIR itself"
         )
-    (which,) = overrides.parse(named[-1:])
-    folders = list(which.sweep_iterator()) if which.is_sweep_override() else [which.value()]
-    first, *others = [_recipe(Path(str(path).strip("'\"")), config_dir) for path in folders]
-    if any({*words} != {*first} for words in others):
-        raise UsageError(f"{named[-1]}: runs that the same words made only")
-    words = [text for text in (*first, *FRESH) if name(text) not in given]
+    source = Path(str(overrides.value_of(given["run"])))
+    words = [text for text in (*_recipe(source, config_dir), *FRESH) if name(text) not in given]
     options = [text for text in texts if text.startswith("-")]
     return [*options, *words, *(text for text in texts if text not in options)]
 
 
 def _recipe(run_dir: Path, config_dir: str | Path | None) -> list[str]:
-    """The words that made the run in a folder, which may come from anybody."""
-    config: DictConfig = folder.read(run_dir, "run")
-    values: Any = OmegaConf.to_container(config)
-    words, folders = values.get("recipe"), config_dir or values.get("config_dir")
-    at, flaw, kept = f"{run_dir / 'config.yaml'}: recipe", "", []
-    if isinstance(words, list) and all(isinstance(text, str) for text in words):
-        kept = [_referring(text) for text in words if name(text) not in OWN]
-        if wrong := [text for text in kept if FOREIGN.search(text)]:
-            flaw = f"{wrong[0]}: is no KEY=VALUE of a run"
-    else:
-        flaw = "must be a list of KEY=VALUE; train it again"
-    if flaw:
-        raise UsageError(f"{at}: {flaw}")
-    try:
-        made: Any = OmegaConf.to_container(configuration.load(kept, folders))
-    except (OSError, TypeError, RecursionError) as error:  # of a folder, or nested in the words
-        raise UsageError(f"{at}: cannot be composed ({type(error).__name__})") from error
+    """The words that made the run in a folder, which may come from anybody.
+
+    config.yaml keeps their references as $(KEY).
+    """
+    config = folder.read(run_dir, "run")
+    made_by, folders = config.get("recipe"), config_dir or config.get("config_dir")
+    words = [re.sub(r"\$\(([^)]*)\)", r"${\1}", str(text)) for text in made_by or ()]
+    kept = [text for text in words if name(text) not in OWN]
+    if made_by is None or any(map(FOREIGN.search, kept)):
+        line = "must be a list of KEY=VALUE; train it again"
+        raise UsageError(f"{run_dir / 'config.yaml'}: recipe: {line}")
+    made: Any = OmegaConf.to_container(configuration.load(kept, folders))
     made.pop("recipe")
     parts.check(made, run_dir)
     chosen = {"task": config.task, "algo": config.algo}
     kept = [*(f"{k}={v}" for k, v in chosen.items() if k not in map(name, kept)), *kept]
     return [search_path(folders), *kept] if folders and not config_dir else kept
-
-
-def _referring(text: str) -> str:
-    """A word of a recipe with its references, which config.yaml keeps as $(KEY)."""
-    return re.sub(r"\$\(([^)]*)\)", r"${\1}", text)
 
 
 @dataclass(frozen=True)
@@ -115,18 +100,13 @@ def joined(starts: Sequence[Start | None]) -> Start | None:
 
 
 def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:
-    """The new run of a checked configuration, and what it begins with."""
-    if config.get("run") is None:
-        return configuration.built(config), None
-    with folder.blame_config(Path(str(config.run)), lacking=True):
-        return _begun(config, Path(str(config.run)))
-
-
-def _begun(config: DictConfig, source: Path) -> tuple[Run, Start]:
-    """The run of `config`, and what it begins with: that of the run in `source`.
+    """The new run of a checked configuration, and what it begins with: that of the run in `run`.
 
     The configuration gets `begun`, from which the run can be built without that folder.
     """
+    if config.get("run") is None:
+        return configuration.built(config), None
+    source = Path(str(config.run))
     then = folder.read_trained(source, "run")
     if config.pretrain:
         raise UsageError(f"pretrain={config.pretrain}: what run={source} has learned is kept")

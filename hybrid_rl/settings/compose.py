@@ -93,12 +93,6 @@ def chosen(hydra: Any, group: str) -> Path | None:
     return next((file for file in files if file.is_file()), None)
 
 
-def of_the_user(hydra: Any, group: str) -> Path | None:
-    """The chosen file of a group, unless it is one of the library or of the thesis."""
-    file = chosen(hydra, group)
-    return None if file is None or {CONF, THESIS} & {*file.parents} else file
-
-
 def complete_names(config: DictConfig, hydra: Any) -> None:
     """Give the runs of a task or a method of the user's the name of its file, if it says none.
 
@@ -107,9 +101,9 @@ def complete_names(config: DictConfig, hydra: Any) -> None:
     config: what was composed, with its references; hydra: Hydra's own part of it.
     """
     for group in ("task", "algo"):
-        file = of_the_user(hydra, group)
-        if file is None or config["resume"] is not None:
-            continue
+        file = chosen(hydra, group)
+        if file is None or {CONF, THESIS} & {*file.parents} or config["resume"] is not None:
+            continue  # no file of the user's
         raw = overrides.raw_values(config)
         lacking = [key for key in OF_A_TASK if raw.get(key) is None]
         if isinstance(raw.get(group), dict):

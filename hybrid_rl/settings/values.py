@@ -49,7 +49,8 @@ def check(config: DictConfig) -> None:
         raise UsageError(f"task={config.task}: {config.algo} {line}")
     for key in COUNTS:
         whole(key, config[key])
-    countable(config)
+    whole("num_envs", config.num_envs, 1, STEPS - 1)
+    whole("total_steps", config.total_steps, 1, STEPS - config.num_envs)  # with the last round
     whole("seed", config.seed, 0, SEEDS - config.num_seeds)
     for mode in [None] if config.eval_modes is None else config.eval_modes:
         one_of("eval_modes", mode, MODES)
@@ -58,17 +59,14 @@ def check(config: DictConfig) -> None:
 
 
 def _check_groups(config: DictConfig) -> None:
-    """Raise UsageError for a section that is no group of keys, or a part without a class."""
+    """Raise UsageError for a section that is no group of keys, or a world without a class."""
     for key in SECTIONS:
         if not isinstance(config.get(key), DictConfig):
             hint = f"; did you mean task={config.get(key)}?" if key == "env" else ""
             raise UsageError(f"{key}={as_yaml(config.get(key))}: must be a group of keys{hint}")
-    named = {"env": config.env, "replay": config.replay}
-    named["controllers.full"] = config.controllers.get("full")
-    for key, node in named.items():
-        if not (isinstance(node, DictConfig) and "_target_" in node):
-            line = "must be a part, a group of keys with _target_"
-            raise UsageError(f"{key}={as_yaml(node)}: {line}")
+    if "_target_" not in config.env:
+        line = "must be a part, a group of keys with _target_"
+        raise UsageError(f"env={as_yaml(config.env)}: {line}")
 
 
 def time_limit(env: External | Robot, given: Mapping[str, Any]) -> dict[str, int]:
@@ -107,12 +105,6 @@ def set_length(learners: DictConfig, decisions: int) -> None:
         schedule = learner.get("schedule")
         if schedule is not None and schedule.get("decisions", decisions) is None:
             schedule.decisions = decisions
-
-
-def countable(config: DictConfig) -> None:
-    """Raise UsageError for more decisions than a counter of 32 bits holds, with the last round."""
-    whole("num_envs", config.num_envs, 1, STEPS - 1)
-    whole("total_steps", config.total_steps, 1, STEPS - config.num_envs)
 
 
 def whole(key: str, value: Any, least: int = 1, most: int | None = None) -> int:

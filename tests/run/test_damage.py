@@ -14,9 +14,8 @@ from hybrid_rl import evaluate, export
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.run import session
-from hybrid_rl.run.checkpoints import checkpoint
+from hybrid_rl.run.checkpoints import checkpoint, manifest
 from hybrid_rl.run.evaluations import Evaluations
-from hybrid_rl.run.files import integrity
 from hybrid_rl.run.logs import rows
 from hybrid_rl.run.machine import memory
 
@@ -52,7 +51,7 @@ def test_a_damaged_checkpoint_is_passed_over(copied, capfd):
     assert "checkpoint 600 is skipped" in printed.out
     assert "continuing from step 500" in printed.out
     assert printed.err == ""
-    assert integrity.verify(copied / "checkpoints" / "600") is None
+    assert manifest.verify(copied / "checkpoints" / "600") is None
 
 
 def test_without_a_sound_checkpoint_nothing_is_done(copied, capfd):
@@ -64,26 +63,6 @@ def test_without_a_sound_checkpoint_nothing_is_done(copied, capfd):
     assert call(lambda: command.run(evaluate.main), f"run={copied}") == 1
     assert "holds no sound checkpoint" in only_line(capfd)
     assert contents(copied) == before
-
-
-def test_a_full_disk_leaves_the_last_checkpoint(copied, monkeypatch, capfd):
-    """The system refuses files beyond 1 kB, as on a full disk."""
-    before = contents(copied / "checkpoints")
-    save, limits = checkpoint.save, resource.getrlimit(resource.RLIMIT_FSIZE)
-
-    def save_on_a_full_disk(*arguments, **known):
-        resource.setrlimit(resource.RLIMIT_FSIZE, (1000, limits[1]))
-        try:
-            save(*arguments, **known)
-        finally:
-            resource.setrlimit(resource.RLIMIT_FSIZE, limits)
-
-    monkeypatch.setattr(checkpoint, "save", save_on_a_full_disk)
-    assert call_train(f"resume={copied}", "total_steps=700") == 1
-    printed = only_line(capfd)
-    assert "checkpoint 700" in printed
-    assert "File too large; checkpoint 600 is intact" in printed
-    assert contents(copied / "checkpoints") == before
 
 
 def test_a_full_disk_is_named(copied, capfd):

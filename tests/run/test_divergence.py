@@ -25,8 +25,8 @@ def test_what_failed_first_or_acted_is_to_blame(infinite, step, quantity):
     metrics = {name: np.zeros((5, 1)) for name in ("sac/q", "world/action", "world/reward")}
     for name, at in infinite.items():
         metrics[name][at:] = np.inf
-    learners = divergence.Diverged(SimpleNamespace(seeds=(3,), axis=Axis()), None)
-    ends = [*learners.add(rows.infinite(metrics, 0, WORLDS)).values()]
+    loop = SimpleNamespace(seeds=(3,), axis=Axis())
+    ends = [*divergence.new_ends(loop, {}, rows.infinite(metrics, 0, WORLDS)).values()]
     line = f"seed 3, step {step}: {quantity} is not finite"
     assert divergence.line(ends, 0, None) == f"{line}; there is no checkpoint"
     assert f"{line}; checkpoint 4 is intact: fix what" in divergence.line(ends, 0, 4)

@@ -12,7 +12,7 @@ import pytest
 from tiny import TINY, call_train, contents, only_line
 
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run.files.lock import lock
+from hybrid_rl.files.lock import lock
 
 pytestmark = pytest.mark.turns(3)
 
@@ -20,7 +20,7 @@ pytestmark = pytest.mark.turns(3)
 HOLD = """
 import sys, time
 from pathlib import Path
-from hybrid_rl.run.files.lock import lock
+from hybrid_rl.files.lock import lock
 with lock(Path(sys.argv[1]), "run_dir"):
     print("held", flush=True)
     time.sleep(60)
@@ -63,7 +63,7 @@ def test_one_at_a_time_has_a_folder(tmp_path):
     code = (
         "import sys\n"
         "from pathlib import Path\n"
-        "from hybrid_rl.run.files.lock import lock\n"
+        "from hybrid_rl.files.lock import lock\n"
         "from hybrid_rl.errors import UsageError\n"
         "folder, done = Path(sys.argv[1]), 0\n"
         "while done < 200:\n"
@@ -95,13 +95,3 @@ def test_a_disk_without_locks_or_that_fails_is_one_line(tmp_path, monkeypatch, c
     line = rf"run_dir={tmp_path}: cannot be written to \(Input/output error\)"
     with pytest.raises(UsageError, match=line), lock(tmp_path, "run_dir"):
         pass
-
-
-def test_the_lock_of_a_folder_with_the_name_of_a_moved_one_stays(tmp_path):
-    folder = tmp_path / "run"
-    folder.mkdir()
-    with lock(folder, "run_dir"):
-        folder.rename(tmp_path / "moved")
-        folder.mkdir()
-        (folder / "lock").write_text("of another process")
-    assert (folder / "lock").read_text() == "of another process"

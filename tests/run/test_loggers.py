@@ -8,7 +8,7 @@ from tiny import call_train, only_line
 
 from hybrid_rl.run.logs.log import RunLog
 
-CONFIG = {"task": "ant", "algo": "sac", "learners": {"policy": {"rate": 0.1}}}
+CONFIG = {"task": "ant", "algo": "sac", "logger": "wandb", "learners": {"policy": {"rate": 0.1}}}
 
 
 def row(step, seed=0, **scalars):
@@ -43,7 +43,7 @@ def wandb(monkeypatch):
 
 def test_each_seed_is_a_run_of_wandb_that_a_resumed_run_continues(tmp_path, wandb):
     for step in (1, 2):
-        with RunLog(tmp_path, [3, 4], CONFIG, wandb=True) as log:
+        with RunLog(tmp_path, [3, 4], CONFIG) as log:
             log.write([row(step, 3, a=0.5, diverged="x"), row(step, 4, a=float("inf"), b=2)])
     first, second, again, _ = wandb
     assert first.logged == [(1, {"a": 0.5, "wall_s": 0.5})]

@@ -13,10 +13,9 @@ from tiny import TINY, call_train, rows_of, run, summary_of
 
 from hybrid_rl.errors import DivergenceError
 from hybrid_rl.run import schedule, session
-from hybrid_rl.run.checkpoints import checkpoint
+from hybrid_rl.run.checkpoints import checkpoint, manifest
 from hybrid_rl.run.evaluations import Evaluations
-from hybrid_rl.run.files import integrity
-from hybrid_rl.run.logs.rows import Gathered
+from hybrid_rl.run.logs import rows
 from hybrid_rl.run.schedule import Pace, Schedule, Speed
 from hybrid_rl.run.session import Session
 from hybrid_rl.settings.words import quoted
@@ -106,18 +105,12 @@ def test_a_call_ends_at_marks_and_where_decisions_change():
 
 
 def test_metrics_in_parts_are_the_metrics_as_one():
-    rng = np.random.default_rng(0)
-    values = rng.normal(size=(50, 3)).astype(np.float32)
-    values[rng.random(values.shape) < 0.3] = np.nan
-    parts, again = Gathered(), Gathered()
+    values = np.random.default_rng(0).normal(size=(50, 3)).astype(np.float32)
+    got = {}
     for cut in np.split(values, [7, 8, 31]):
-        parts.add({"b": cut, "a": -cut, "episode/done": cut})
-    again.unpack(*parts.pack())
-    for gathered in (parts, again):
-        got = gathered.take()
-        assert list(got) == ["b", "a"]
-        assert got["b"].tobytes() == values.tobytes()
-    assert parts.pack() == ([], None)
+        got = rows.appended(got, {"b": cut, "a": -cut, "episode/done": cut})
+    assert list(got) == ["b", "a"]
+    assert got["b"].tobytes() == values.tobytes()
 
 
 def test_a_run_stopped_anywhere_goes_on_bit_for_bit(whole, short, tmp_path, capsys):
@@ -196,9 +189,7 @@ def test_one_learner_diverges_and_the_other_goes_on(whole, tmp_path, capfd):
     assert finite(folder)
     assert call_train(f"resume={folder}", "total_steps=700") == 1  # and it stays out
     printed = capfd.readouterr().err
-    assert printed.startswith(
-        f"hybrid_rl: seed 1, step 251: {end['quantity']} is not finite; the oth"
-    )
+    assert printed.startswith(f"hybrid_rl: seed 1, step 251: {end['quantity']} is not finite; the")
     assert printed.count("\n") == 1
     assert {row["seed"] for row in rows_of(folder) if row["step"] > 251} == {0}
     assert rows_of(folder)[-1]["step"] == 700
@@ -219,7 +210,7 @@ def test_an_evaluation_that_is_not_finite_ends_the_learner(tmp_path):
         "resume it, or begin again with a lower learning rate"
     )
     assert checkpoint.steps(folder / "checkpoints") == [100, 200]
-    assert integrity.verify(folder / "checkpoints" / "200") is None
+    assert manifest.verify(folder / "checkpoints" / "200") is None
     assert rows_of(folder)[-1]["diverged"] == "eval/return"
     summary = summary_of(folder)
     assert (summary["finished"], summary["diverged"][0]["step"]) == (False, 300)

@@ -6,7 +6,7 @@ from typing import Any
 
 from hybrid_rl.analysis.style import blank, legend_outside, line_styles, words
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run.files.reading import json_file
+from hybrid_rl.files.reading import json_file
 from hybrid_rl.run.logs.records import arrays
 from hybrid_rl.thesis.studies import queries
 

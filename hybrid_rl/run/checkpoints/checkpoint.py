@@ -24,13 +24,10 @@ from typing import Any
 
 from hybrid_rl.errors import CheckpointError
 from hybrid_rl.files.atomic import own_folder, sync
-from hybrid_rl.run.checkpoints import leaves
-from hybrid_rl.run.files import integrity
-from hybrid_rl.run.files.reading import from_json
+from hybrid_rl.run.checkpoints import leaves, manifest
 from hybrid_rl.types import PyTree
 
 KEEP = 2  # complete checkpoints
-ATTEMPTS = 100  # to read a folder whose checkpoints another process replaces
 NAME = re.compile(r"(\d+)|\.(\d+)\.replaced\.\w+\.tmp")  # of a finished checkpoint
 
 
@@ -54,7 +51,7 @@ def meta(folder: Path) -> dict[str, Any]:
     """meta.json of the newest readable checkpoint; {} if there is none."""
     for _, path in sorted(_finished(folder).items(), reverse=True):
         with contextlib.suppress(OSError, ValueError):
-            return from_json((path / "meta.json").read_text(encoding="utf-8"))
+            return json.loads((path / "meta.json").read_text(encoding="utf-8"))
     return {}
 
 
@@ -71,18 +68,14 @@ def save(folder: Path, step: int, state: PyTree, meta: dict, keep: int = KEEP) -
         own_folder(folder)  # not its parents: a run folder that is gone stays gone
         _recover(folder)
         draft.mkdir()
-        made = draft.stat()
-        _fits(folder, sum(array.nbytes for array in arrays.values()))
         for name, text in texts.items():
             (draft / name).write_text(text + "\n", encoding="utf-8")
         leaves.write(draft, arrays)
-        if not os.path.samestat(draft.stat(), made):  # TensorStore makes folders that are gone
-            raise OSError("its folder was moved or deleted")
-        integrity.write_manifest(draft)
+        manifest.write(draft)
         path = _rename(draft, folder / str(step))
     except BaseException as problem:
         line = _refusal(folder, step, problem)
-        _discard(draft)
+        shutil.rmtree(draft, ignore_errors=True)
         if not isinstance(problem, Exception):  # Ctrl-C and the like
             raise
         raise CheckpointError(line) from problem
@@ -100,7 +93,7 @@ def restore(
     each checkpoint that was skipped. Another process may write checkpoints to `folder` and delete
     older ones meanwhile.
     """
-    for _ in range(ATTEMPTS):
+    while True:
         checkpoints = _finished(folder)
         if step is not None and step not in checkpoints:
             has = sorted(checkpoints) or "none"
@@ -111,14 +104,13 @@ def restore(
             before = _identity(path)
             read, flaw = _attempt(path, like)
             if before is None or _identity(path) != before:
-                break  # deleted or replaced while it was read
+                break  # deleted or replaced while it was read: begin again
             if read is not None:
                 return candidate, *read, notes
             notes.append(f"checkpoint {candidate} is skipped: {flaw}")
         else:
             flaw = f"no sound checkpoint: {'; '.join(notes)}" if notes else "no checkpoint"
             raise CheckpointError(f"{folder} holds {flaw}")
-    raise CheckpointError(f"{folder}: checkpoints are replaced faster than they can be read")
 
 
 def _identity(path: Path) -> tuple[int, int, int] | None:
@@ -132,7 +124,7 @@ def _identity(path: Path) -> tuple[int, int, int] | None:
 
 def _attempt(path: Path, like: PyTree) -> tuple[tuple[PyTree, dict] | None, str]:
     """State and meta of the checkpoint at `path`, or None and why it has none."""
-    flaw = integrity.verify(path)
+    flaw = manifest.verify(path)
     if flaw is not None:
         return None, flaw
     try:
@@ -141,13 +133,6 @@ def _attempt(path: Path, like: PyTree) -> tuple[tuple[PyTree, dict] | None, str]
         raise
     except (OSError, ValueError) as problem:  # TensorStore raises ValueError
         return None, " ".join(str(problem).split())
-
-
-def _fits(folder: Path, needed: int) -> None:
-    """Raise OSError if the disk is too small. needed: [bytes]."""
-    free = shutil.disk_usage(folder).free
-    if needed > free:
-        raise OSError(f"it needs {needed / 1e6:.0f} MB and the disk has {free / 1e6:.0f} MB left")
 
 
 def _recover(folder: Path) -> None:
@@ -169,14 +154,6 @@ def _hidden(folder: Path, stem: str) -> Path:
     return folder / f".{stem}.{secrets.token_hex(4)}.tmp"
 
 
-def _discard(draft: Path) -> None:
-    """Delete a draft, and its empty parents, which TensorStore may have made."""
-    shutil.rmtree(draft, ignore_errors=True)
-    with contextlib.suppress(OSError):
-        draft.parent.rmdir()
-        draft.parent.parent.rmdir()
-
-
 def _rename(draft: Path, path: Path) -> Path:
     """Give a complete draft its name, which an older checkpoint loses."""
     if os.path.lexists(path):
@@ -189,7 +166,7 @@ def _rename(draft: Path, path: Path) -> Path:
 def _prune(folder: Path, newest: int, keep: int) -> None:
     """Delete the checkpoints that the new one replaces."""
     known = steps(folder)
-    sound = [s for s in known if s <= newest and not integrity.verify(folder / str(s), False)]
+    sound = [s for s in known if s <= newest and not manifest.verify(folder / str(s), False)]
     for step in set(known) - set(sound[-keep:]):
         with contextlib.suppress(OSError):
             (folder / str(step)).rename(_hidden(folder, f"{step}.pruned"))
@@ -201,6 +178,6 @@ def _refusal(folder: Path, step: int, problem: BaseException) -> str:
     reason = " ".join(str(problem).split()) or type(problem).__name__
     if system := re.search(r"([^:]+) \[os_error_code=", reason):  # the end of TensorStore's message
         reason = system[1].strip()
-    before = [s for s in steps(folder) if not integrity.verify(folder / str(s), False)]
+    before = [s for s in steps(folder) if not manifest.verify(folder / str(s), False)]
     last = f"checkpoint {before[-1]} is intact" if before else "there is no earlier one"
     return f"checkpoint {step} in {folder} was not written: {reason}; {last}"

@@ -6,8 +6,7 @@ their data, arrays without elements as their shape alone.
 
 import contextlib
 import io
-import logging
-import sys
+import json
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -18,10 +17,9 @@ import jax
 import numpy as np
 
 from hybrid_rl.errors import MisfitError
-from hybrid_rl.run.files.reading import from_json
 from hybrid_rl.types import PyTree
 
-AFTERMATH = 0.5  # [s] in which TensorStore's threads print tracebacks after a failed write
+AFTERMATH = 0.5  # [s] in which tracebacks are printed after a failed write
 WRITTEN = "manifest.ocdbt"  # by Orbax as the last file: without it nothing can be read
 
 
@@ -48,21 +46,6 @@ def _named(tree: PyTree) -> list[tuple[str, jax.Array]]:
 
 
 @contextlib.contextmanager
-def _quiet() -> Iterator[None]:
-    """Suppress the output of Orbax and TensorStore."""
-    logger = logging.getLogger("absl")
-    level, hook = logger.level, sys.unraisablehook
-    logger.setLevel(logging.CRITICAL + 1)
-    sys.unraisablehook = lambda _: None
-    try:
-        with contextlib.redirect_stderr(io.StringIO()):
-            yield
-    finally:
-        logger.setLevel(level)
-        sys.unraisablehook = hook
-
-
-@contextlib.contextmanager
 def _plain(path: Path) -> Iterator[Path]:
     r"""A path to the folder `path` that Orbax takes literally: it reads [...] and \ as patterns."""
     path = path.resolve()
@@ -81,7 +64,8 @@ def write(path: Path, leaves: dict[str, np.ndarray]) -> None:
 
     filled = {name: leaf for name, leaf in leaves.items() if leaf.size}  # it refuses empty ones
     handler = ocp.PyTreeCheckpointHandler(use_compression=False)
-    with _quiet(), _plain(path) as plain, ocp.Checkpointer(handler) as writer:
+    quiet = contextlib.redirect_stderr(io.StringIO())  # of TensorStore's threads, after a failure
+    with quiet, _plain(path) as plain, ocp.Checkpointer(handler) as writer:
         try:
             writer.save(plain / "state", ocp.args.PyTreeSave(filled))
         except Exception:
@@ -95,14 +79,14 @@ def read(path: Path, like: PyTree) -> tuple[PyTree, dict]:
     """The leaves of `like` in a sound checkpoint, and its meta."""
     import orbax.checkpoint as ocp  # 1 s
 
-    meta = from_json((path / "meta.json").read_text(encoding="utf-8"))
-    kinds = from_json((path / "leaves.json").read_text(encoding="utf-8"))
+    meta = json.loads((path / "meta.json").read_text(encoding="utf-8"))
+    kinds = json.loads((path / "leaves.json").read_text(encoding="utf-8"))
     wanted = dict(_named(like))
     _match(path, kinds, wanted)
     filled = {name: 0 for name in wanted if 0 not in kinds[name]["shape"]}
     host = dict.fromkeys(filled, ocp.RestoreArgs(restore_type=np.ndarray))
     args = ocp.args.PyTreeRestore(item=filled, restore_args=host, partial_restore=True)
-    with _quiet(), _plain(path) as plain, ocp.Checkpointer(ocp.PyTreeCheckpointHandler()) as reader:
+    with _plain(path) as plain, ocp.Checkpointer(ocp.PyTreeCheckpointHandler()) as reader:
         # Orbax refuses an empty selection, which a method that learns nothing has.
         arrays = reader.restore(plain / "state", args) if filled else {}
     state = []

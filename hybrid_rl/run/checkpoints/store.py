@@ -3,7 +3,6 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 import jax
@@ -14,7 +13,7 @@ from hybrid_rl.errors import MisfitError
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.logs.log import RunLog
 from hybrid_rl.run.logs.records import Row
-from hybrid_rl.run.logs.rows import Gathered
+from hybrid_rl.run.logs.rows import Metrics
 from hybrid_rl.run.schedule import Speed
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.loop import Loop
@@ -22,7 +21,6 @@ from hybrid_rl.training.loop import Loop
 # {"seed", "step", "quantity"} of a learner that diverged; "of": its numbers, where a program has
 # several sets of them
 End = dict[str, Any]
-NONE: Mapping[int, End] = MappingProxyType({})
 
 
 @dataclass
@@ -36,7 +34,7 @@ class Record:
     metrics_bytes: int = 0  # of a checkpoint: the size of metrics.jsonl then
     learning: Speed = field(default_factory=Speed)  # over all sessions
     unevaluated: bool = False  # an evaluation is due at `step`
-    ends: list[End] = field(default_factory=list)  # of learners that diverged
+    ends: dict[int, End] = field(default_factory=dict)  # of learners that diverged, by number
 
 
 def with_capacity(agent: Agent, capacity: int) -> Agent:
@@ -102,48 +100,46 @@ class Shelf:
             for row, seed in zip(rows, seeds, strict=True):
                 log.write([{"step": row.pop("step"), "seed": seed} | row | {"wall_s": wall_s}])
 
-    def save(
-        self, state: Any, gathered: Gathered, record: Record, ends: Mapping[int, End] = NONE
-    ) -> None:
-        """Write a checkpoint to each folder. state: [S, ...]; ends: by the learner's number."""
+    def save(self, state: Any, gathered: Metrics, record: Record) -> None:
+        """Write a checkpoint to each folder. state: [S, ...]."""
         sizes = [log.flush() for log in self.logs] or [0]
-        parts = gathered.split(len(self.folders))
-        each = zip(self.folders, self.settings, self.shares(), sizes, parts, strict=True)
-        for folder, settings, share, size, part in each:
+        each = zip(self.folders, self.settings, self.shares(), sizes, strict=True)
+        for folder, settings, share, size in each:
             mine = replace(
                 record,
                 returns=record.returns[share],
                 final_eval=record.final_eval[share],
                 metrics_bytes=size,
-                ends=[end for s, end in ends.items() if share.start <= s < share.stop],
             )
+            ends = [end for s, end in record.ends.items() if share.start <= s < share.stop]
             own = state
             if len(self.folders) > 1:  # of which the configuration has the numbers
                 own = jax.tree.map(lambda leaf, at=share: leaf[at], state.replace(numbers={}))
             leaves = {each.name: getattr(own, each.name) for each in fields(own)}
             leaves |= {} if self.replay else {"memory": None}
-            names, array = part.pack()
-            leaves |= {} if array is None else {"gathered": array}
+            parts = [np.asarray(m[:, share], np.float32) for m in gathered.values()]
+            leaves |= {"gathered": np.stack(parts)} if parts else {}
             meta = {
                 "seeds": list(self.loop.seeds[share]),
                 "capacity": self.loop.agent.replay.capacity,
                 "settings": dict(settings),
-                "gathered": {"names": names, "shape": [] if array is None else list(array.shape)},
-                "record": asdict(mine),
+                "gathered": {"names": [*gathered], "shape": np.shape(parts)},
+                "record": asdict(mine) | {"ends": ends},
             }
             checkpoint.save(folder, record.step, leaves, meta)
         self.newest = record.step
 
-    def restore(self) -> tuple[Any, Gathered, Record, dict[int, End], list[str]]:
-        """(state [S, ...], metrics since the last row, record, ends by learner, notes).
+    def restore(self) -> tuple[Any, Metrics, Record, list[str]]:
+        """(state [S, ...], metrics since the last row, record, notes).
 
         All from the newest sound checkpoints of one step; a kill may have left others.
         """
         state, metas, notes = self._state(None)
-        records, ends = [Record(**meta["record"]) for meta in metas], {}
-        for record, share in zip(records, self.shares(), strict=True):
-            seeds = self.loop.seeds[share]
-            ends |= {share.start + seeds.index(end["seed"]): end for end in record.ends}
+        records, ends = [], {}
+        for meta, share in zip(metas, self.shares(), strict=True):
+            seeds, own = self.loop.seeds[share], meta["record"]
+            ends |= {share.start + seeds.index(end["seed"]): end for end in own.get("ends", ())}
+            records.append(Record(**(own | {"ends": {}})))
         for log, record in zip(self.logs, records, strict=bool(self.logs)):
             notes += log.rewind(record.metrics_bytes, record.step)
         whole = replace(
@@ -153,10 +149,11 @@ class Shelf:
             wall_s=max(record.wall_s for record in records),
             unevaluated=any(record.unevaluated for record in records),
             learning=Speed(**metas[0]["record"]["learning"]),
-            ends=[],
+            ends=ends,
         )
-        gathered = Gathered.joined(list(map(self._gathered, self.folders, metas)))
-        return self.loop.on_devices(state), gathered, whole, ends, notes
+        each = list(map(self._gathered, self.folders, metas))
+        gathered = {n: np.concatenate([part[n] for part in each], axis=1) for n in each[0]}
+        return self.loop.on_devices(state), gathered, whole, notes
 
     def learner(self, number: int) -> Any:
         """AgentState [...] of one learner in the newest checkpoint, or else its first one."""
@@ -193,11 +190,10 @@ class Shelf:
         memory = read_part(folder, agent, seeds, "memory", self.newest)[1].memory
         return memory if meta["capacity"] == now.capacity else each_learner(now.resized, memory)
 
-    def _gathered(self, folder: Path, meta: Mapping[str, Any]) -> Gathered:
+    def _gathered(self, folder: Path, meta: Mapping[str, Any]) -> Metrics:
         """The metrics in the newest checkpoint of a folder."""
-        gathered, packed = Gathered(), meta.get("gathered", {})
-        if packed.get("names"):
-            like = {"gathered": jax.ShapeDtypeStruct(tuple(packed["shape"]), np.float32)}
-            array = checkpoint.restore(folder, like, self.newest)[1]["gathered"]
-            gathered.unpack(packed["names"], array)
-        return gathered
+        if not (packed := meta["gathered"]).get("names"):
+            return {}
+        like = {"gathered": jax.ShapeDtypeStruct(tuple(packed["shape"]), np.float32)}
+        array = checkpoint.restore(folder, like, self.newest)[1]["gathered"]
+        return dict(zip(packed["names"], np.asarray(array), strict=True))

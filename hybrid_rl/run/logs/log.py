@@ -13,18 +13,15 @@ from typing import Any, Self
 import numpy as np
 
 from hybrid_rl.errors import CheckpointError
-from hybrid_rl.files.atomic import open_own
-from hybrid_rl.run.files.integrity import write_text
-from hybrid_rl.run.files.reading import lines
-from hybrid_rl.run.logs.loggers import Begun, WandB
-from hybrid_rl.run.logs.records import Row, json_value, row_of
+from hybrid_rl.files.atomic import open_own, write_text
+from hybrid_rl.files.reading import open_file
+from hybrid_rl.run.logs.records import Begun, Row, json_value
 
 
 class RunLog:
-    """Writes rows of numbers to a run folder, which exists.
+    """Writes rows of numbers to a run folder, which exists; nothing before the first row.
 
-    config: settings of the run, for loggers. wandb: W&B gets the rows, too, and so does the
-    function `on_row`.
+    config: settings of the run, for loggers. on_row: a function that gets the rows, too.
     """
 
     def __init__(
@@ -32,42 +29,40 @@ class RunLog:
         run_dir: Path,
         seeds: Sequence[int],
         config: dict[str, Any] | None = None,
-        wandb: bool = False,
-        on_row: Callable[[Row], Any] | None = None,
+        on_row: Callable[[Row], Any] = lambda row: None,
     ) -> None:
         self.run_dir, self.path = run_dir, run_dir / "metrics.jsonl"
-        self._file = open_own(self.path)
-        self._begun, self._wandb, self._on_row = Begun(run_dir, seeds, config or {}), wandb, on_row
-        self._loggers: list[Any] = []  # opened by the first row
+        self._begun, self._on_row = Begun(run_dir, seeds, config or {}), on_row
+        self._file: Any = None
+        self._loggers: list[Any] = []
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
-        for logger in reversed(self._loggers):
-            logger.close()
-        self._file.close()
+        for each in (*reversed(self._loggers), *filter(None, [self._file])):
+            each.close()
 
     def write(self, rows: Sequence[Row]) -> None:
         """Append rows {"step", "seed", "wall_s", name: number or word, ...}."""
         for row in rows:
-            if not self._loggers:
-                self._open()
+            self._open()
             plain = {name: v if isinstance(v, str) else number(v) for name, v in row.items()}
             plain["wall_s"] = round(float(row["wall_s"]), 3)
             self._file.write(json.dumps(plain, allow_nan=False).encode("ascii") + b"\n")
             self._file.flush()
             for logger in self._loggers:
                 logger(plain)
-            if self._on_row is not None:
-                self._on_row(plain)
+            self._on_row(plain)
 
     def _open(self) -> None:
-        from hybrid_rl.run.logs.tensorboard import TensorBoard  # 0.2 s
+        """Open the files that are not open yet."""
+        self._file = self._file or open_own(self.path)
+        if not self._loggers:
+            from hybrid_rl.run.logs import loggers  # TensorBoard takes 0.2 s
 
-        self._check()
-        for kind in (TensorBoard, WandB) if self._wandb else (TensorBoard,):
-            self._loggers.append(kind(self._begun))
+            self._check()
+            self._loggers = loggers.opened(self._begun)
 
     def _check(self) -> None:
         """Raise CheckpointError if metrics.jsonl is no longer the file that is open here."""
@@ -80,6 +75,7 @@ class RunLog:
 
     def flush(self) -> int:
         """Force all rows to the disk; returns the size of metrics.jsonl [bytes], for `rewind`."""
+        self._open()
         self._check()
         os.fsync(self._file.fileno())
         for logger in self._loggers:
@@ -92,14 +88,15 @@ class RunLog:
         offset: [bytes] that `flush` returned then. Returns one line for each difference from the
         state at the checkpoint.
         """
-        whole = [line for line in lines(self.path, offset) if line.endswith(b"\n")]
-        sound = all(row_of(line) is not None for line in whole)
-        self._file.truncate(sum(map(len, whole)))
+        self._file = open_own(self.path)
+        with open_file(self.path) as file:
+            whole = file.read(offset).rpartition(b"\n")
+        self._file.truncate(len(whole[0] + whole[1]))
         self._file.seek(0, os.SEEK_END)
         self._begun = self._begun._replace(step=step)
-        if self._file.tell() == offset and sound:
+        if self._file.tell() == offset:
             return []
-        return [f"{self.path} has changed: rows before step {step} are missing or edited"]
+        return [f"{self.path} has changed: rows before step {step} are missing"]
 
     def summary(self, fields: dict[str, Any]) -> Path:
         """Replace summary.json; NaN and infinity become null."""

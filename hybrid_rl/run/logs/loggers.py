@@ -1,40 +1,74 @@
-"""Copies of a run's rows for other tools, beside metrics.jsonl.
+"""Copies of a run's rows for other tools, beside metrics.jsonl: TensorBoard's and perhaps W&B's.
 
-A logger is made of what has begun, before the first row; it is called with each row, its `flush`
-before each checkpoint, and its `close` at the end. TensorBoard's is in logs/tensorboard.
+A logger is called with each row, its `flush` before each checkpoint, and its `close` at the end.
 
 W&B's own variables apply: WANDB_PROJECT, WANDB_ENTITY and, without a network, WANDB_MODE=offline.
 A resumed run continues the runs of W&B, which drop steps that they have already.
 """
 
+import time
 import uuid
-from collections.abc import Sequence
 from importlib import import_module
-from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
-from hybrid_rl.errors import UsageError, install
+from tensorboardX.event_file_writer import EventsWriter
+from tensorboardX.proto.event_pb2 import (  # made at import, so pyright cannot read it
+    Event,  # pyright: ignore[reportAttributeAccessIssue]
+    SessionLog,  # pyright: ignore[reportAttributeAccessIssue]
+)
+from tensorboardX.proto.summary_pb2 import Summary  # pyright: ignore[reportAttributeAccessIssue]
+
 from hybrid_rl.files.atomic import open_own, own_folder
-from hybrid_rl.run.logs.records import COORDINATES, Row
-from hybrid_rl.settings.values import one_of
+from hybrid_rl.run.logs.records import COORDINATES, Begun, Row
 
 
-class Begun(NamedTuple):
-    """A run whose rows are to come."""
-
-    folder: Path
-    seeds: Sequence[int]
-    config: dict[str, Any]
-    step: int | None = None  # from which it is resumed
+def opened(run: Begun) -> list[Any]:
+    """The loggers of a run."""
+    kinds = (TensorBoard, WandB) if run.config.get("logger") == "wandb" else (TensorBoard,)
+    return [kind(run) for kind in kinds]
 
 
 def scalars(row: Row) -> dict[str, float]:
     """The finite numbers of a row."""
-    return {
-        name: value
-        for name, value in row.items()
-        if name not in COORDINATES and value is not None and not isinstance(value, str)
-    }
+    named = {name: value for name, value in row.items() if name not in COORDINATES}
+    return {name: v for name, v in named.items() if v is not None and not isinstance(v, str)}
+
+
+class TensorBoard:
+    """tensorboard/ in the run folder: a file, or a subfolder for each of several seeds.
+
+    So a chart overlays the seeds. What older files have after the step of a resumed run is void.
+    tensorboardX's own SummaryWriter passes events to a thread, and its flush does not wait for it:
+    here what is flushed survives a kill.
+    """
+
+    def __init__(self, run: Begun) -> None:
+        folder = own_folder(run.folder / "tensorboard")
+        self._files: dict[int, EventsWriter] = {}
+        for seed in run.seeds:
+            home = own_folder(folder / f"seed_{seed}") if len(run.seeds) > 1 else folder
+            unique = f".{time.time_ns()}"  # files of the same second stay apart, in order
+            self._files[seed] = EventsWriter(str(home / "events"), unique)
+            if run.step is not None:
+                start = SessionLog(status=SessionLog.START)
+                event = Event(step=run.step + 1, session_log=start, wall_time=time.time())
+                self._files[seed].write_event(event)
+
+    def __call__(self, row: Row) -> None:
+        """Append the numbers of a row at its step."""
+        values = [Summary.Value(tag=tag, simple_value=v) for tag, v in scalars(row).items()]
+        event = Event(step=row["step"], summary=Summary(value=values), wall_time=time.time())
+        self._files[row["seed"]].write_event(event)
+
+    def flush(self) -> None:
+        """Force all events to the disk."""
+        for file in self._files.values():
+            file.flush()
+
+    def close(self) -> None:
+        """Close the files."""
+        for file in self._files.values():
+            file.close()
 
 
 class WandB:
@@ -50,25 +84,25 @@ class WandB:
     def __call__(self, row: Row) -> None:
         """Log the numbers of a row at its step."""
         if values := scalars(row):
-            run = self._started(int(row["seed"]))
-            run.log(values | {"wall_s": row["wall_s"]}, step=int(row["step"]))
+            seed = int(row["seed"])
+            if seed not in self._runs:
+                self._runs[seed] = self._started(seed)
+            self._runs[seed].log(values | {"wall_s": row["wall_s"]}, step=int(row["step"]))
 
     def _started(self, seed: int) -> Any:
-        if seed not in self._runs:
-            wandb: Any = import_module("wandb")
-            folder, config = self._run.folder, self._run.config
-            self._runs[seed] = wandb.init(
-                id=self.id_of(seed),
-                resume="allow",
-                name=folder.name + (f" seed {seed}" if len(self._run.seeds) > 1 else ""),
-                group=str(folder),
-                job_type=f"{config['task']} {config['algo']}",
-                dir=str(folder),
-                config=config | {"seed": seed},
-                reinit="create_new",
-                settings=wandb.Settings(console="off"),
-            )
-        return self._runs[seed]
+        wandb: Any = import_module("wandb")
+        folder, config = self._run.folder, self._run.config
+        return wandb.init(
+            id=self.id_of(seed),
+            resume="allow",
+            name=folder.name + (f" seed {seed}" if len(self._run.seeds) > 1 else ""),
+            group=str(folder),
+            job_type=f"{config['task']} {config['algo']}",
+            dir=str(folder),
+            config=config | {"seed": seed},
+            reinit="create_new",
+            settings=wandb.Settings(console="off"),
+        )
 
     def id_of(self, seed: int) -> str:
         """The id of the run of a seed, the same when it is resumed."""
@@ -87,14 +121,3 @@ class WandB:
         """End the runs."""
         for run in self._runs.values():
             run.finish()
-
-
-def to_wandb(name: str | None) -> bool:
-    """True if the key `logger` of a configuration names W&B, which is installed; null: none."""
-    if one_of("logger", name, (None, "wandb")) is None:
-        return False
-    try:
-        import_module("wandb")
-    except ImportError as error:
-        raise UsageError(f"logger=wandb: not installed; {install('wandb')}") from error
-    return True

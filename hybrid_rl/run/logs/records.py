@@ -1,52 +1,39 @@
-"""Records of a run, as they are read back: rows of metrics.jsonl, and summary.json.
+"""Records of a run: rows of metrics.jsonl, the line about a result, values as JSON holds them."""
 
-A line or a value that training does not write is damage, and is found here.
-"""
-
+import json
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import NoneType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from hybrid_rl.errors import UsageError
-from hybrid_rl.run.files.reading import from_json, json_file
-
 Row = dict[str, Any]
 COORDINATES = ("step", "seed", "wall_s")  # of a row; every other name but WORD is a metric
-END = ("seed", "step", "quantity")
 WORD = "diverged"  # of a row: the only value that is no number
-LARGE = 2**63  # no whole number of a row is as large
+Number = int | float | NoneType
+
+
+class Begun(NamedTuple):
+    """A run whose rows are to come."""
+
+    folder: Path
+    seeds: Sequence[int]
+    config: dict[str, Any]
+    step: int | None = None  # from which it is resumed
 
 
 def row_of(line: bytes) -> Row | None:
     """The row in a line of metrics.jsonl; None for anything else."""
     try:
-        row = from_json(line)
-        step, seed, wall = (row[name] for name in COORDINATES)
+        row = json.loads(line)
+        whole = type(row["step"]) is type(row["seed"]) is int
+        numbers = (value for name, value in row.items() if name != WORD)
+        sound = whole and "wall_s" in row and all(isinstance(v, Number) for v in numbers)
     except (ValueError, TypeError, LookupError):
         return None
-    whole = [each for each in row.values() if type(each) is int]
-    sound = (
-        type(step) is type(seed) is int
-        and min(step, seed) >= 0
-        and _number(wall)
-        and all(
-            isinstance(each, (int, float, NoneType)) for name, each in row.items() if name != WORD
-        )
-        and all(abs(each) < LARGE for each in whole)
-    )
     return row if sound else None
-
-
-def summary_of(file: Path) -> dict[str, Any]:
-    """The contents of summary.json."""
-    values = json_file(file)
-    if wrong := [key for key in SUMMARY if key in values and not SUMMARY[key](values[key])]:
-        raise UsageError(f"{file}: {wrong[0]} is not what training writes")
-    return values
 
 
 def result_line(summary: Mapping[str, Any]) -> str:
@@ -61,34 +48,6 @@ def result_line(summary: Mapping[str, Any]) -> str:
             text += f" (mean of {len(known)} seeds)"
         parts.append(f"{name} {text}")
     return "; ".join(parts)
-
-
-def _number(value: Any) -> bool:
-    return type(value) in (int, float) and abs(value) < LARGE and math.isfinite(value)
-
-
-def _maybe(value: Any) -> bool:
-    return value is None or _number(value)
-
-
-def _all(each: Callable[[Any], bool]) -> Callable[[Any], bool]:
-    """True if a value is null, or a list of what `each` accepts."""
-    return lambda value: value is None or (isinstance(value, list) and all(map(each, value)))
-
-
-def _end(value: Any) -> bool:
-    """True if a value says where a learner diverged."""
-    return isinstance(value, dict) and _number(value.get("step")) and {*END} <= {*value}
-
-
-SUMMARY = {  # key -> whether a value is one that training writes
-    **dict.fromkeys(("total_steps", "wall_s", "env_steps_per_s"), _maybe),
-    **dict.fromkeys(("final_eval", "final_return"), _all(_maybe)),
-    "seeds": lambda value: isinstance(value, list) and all(type(each) is int for each in value),
-    "diverged": _all(_end),
-    "versions": lambda value: isinstance(value, dict),
-    "git_commit": lambda value: isinstance(value, (str, NoneType)),
-}
 
 
 def changes(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:

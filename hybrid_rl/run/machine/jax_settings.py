@@ -1,7 +1,6 @@
 """Settings of JAX for a process: compilation cache, precision, threads."""
 
 import os
-import re
 import sys
 from pathlib import Path
 from tempfile import TemporaryFile
@@ -13,7 +12,6 @@ from hybrid_rl.errors import UsageError
 CACHE = "JAX_COMPILATION_CACHE_DIR"  # JAX's own variable, which overrides compile_cache
 CACHE_BYTES = 4 * 2**30  # [bytes] at most
 OURS = "programs"  # folder in compile_cache, as JAX deletes from its folder what it likes
-ENTRY = re.compile(r"(.+-[0-9a-f]{64})-cache")  # a file of JAX's cache
 THREADS = 8  # of XLA with MJX on a CPU, at least
 
 
@@ -36,7 +34,6 @@ def prepare(config: DictConfig) -> None:
     if config.compile_cache is None or CACHE in os.environ:
         return
     if cache := cache_folder(str(config.compile_cache)):
-        _repair(cache)
         jax.config.update("jax_compilation_cache_dir", str(cache))
         jax.config.update("jax_compilation_cache_max_size", CACHE_BYTES)
         jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.1)
@@ -62,11 +59,3 @@ def cache_folder(compile_cache: str) -> Path | None:
         print(f"hybrid_rl: compile_cache={compile_cache}: {why}", file=sys.stderr, flush=True)
         return None
     return cache
-
-
-def _repair(cache: Path) -> None:
-    """Remove entries that a kill left incomplete: JAX warns of them and never replaces them."""
-    for entry in cache.glob("*-cache"):
-        name = ENTRY.fullmatch(entry.name)
-        if name and not entry.with_name(f"{name[1]}-atime").exists():
-            entry.unlink(missing_ok=True)

@@ -44,13 +44,11 @@ def lock(folder: Path, key: str) -> Iterator[Path]:
             flaw = f"cannot be written to ({error.strerror})"
     if flaw:
         raise UsageError(f"{key}={folder}: {flaw}")
-    mine = path.stat() if held.is_locked else None
-    if mine is None:
+    if not held.is_locked:
         print(f"{folder}: this disk has no locks; let no other process write there")
     try:
         yield folder
     finally:
-        with suppress(OSError):
-            if mine and os.path.samestat(mine, path.stat()):  # the folder may have been moved
-                path.unlink()
+        if held.is_locked:
+            path.unlink(missing_ok=True)  # the folder may have been moved
         held.release()
