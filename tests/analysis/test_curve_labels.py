@@ -21,14 +21,6 @@ def test_runs_of_other_settings_are_other_curves(tmp_path):
     ]
 
 
-def test_many_differences_become_letters_with_a_note(tmp_path):
-    for seed in range(2):
-        run(tmp_path / str(seed), [1.0], seed, **dict.fromkeys("uvwxy", 10 * seed))
-    one, two = curves(tmp_path)
-    assert (one.label, two.label) == ("sac A", "sac B")
-    assert one.notes == ("hopper, sac A: u=0, v=0, w=0, x=0, y=0",)
-
-
 def test_only_parts_that_are_built_are_compared(tmp_path):
     """A value that reaches several sections counts once, by the name a user would type."""
     for seed, norm in enumerate(["true", "false"]):

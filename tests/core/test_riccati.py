@@ -13,9 +13,9 @@ from hybrid_rl.core import analytic, riccati
 from hybrid_rl.envs.analytic.cart_double_pendulum import CartDoublePendulum
 from hybrid_rl.envs.analytic.no_dynamics import NoDynamics
 from hybrid_rl.envs.analytic.point_mass import PointMass
-from hybrid_rl.envs.analytic.state import Euclidean, fully_observed
+from hybrid_rl.envs.analytic.state import Euclidean
 from hybrid_rl.policies.regulator import Regulator
-from hybrid_rl.types import EnvState, Spec
+from hybrid_rl.types import Spec
 
 WEIGHTS = (5.0, 50.0, 50.0, 20.0, 700.0, 700.0)
 
@@ -129,11 +129,8 @@ class Faulty(Euclidean):
     def reward_of(self, x: Array, u: Array, after: Array) -> Array:
         return jnp.zeros(())
 
-    def reset(self, key: Array) -> EnvState:
-        return fully_observed(jnp.zeros(2), jnp.zeros(()))
-
-    def equilibrium(self) -> tuple[Array, Array]:
-        return jnp.zeros(2), jnp.zeros(1)
+    def initial(self, key: Array) -> Array:
+        return jnp.zeros(2)
 
 
 @pytest.mark.parametrize(
