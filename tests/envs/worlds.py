@@ -1,7 +1,7 @@
 """The environments under test, and one compiled program of each, shared by all tests."""
 
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -36,22 +36,11 @@ TOUCHING, LIFTED, OTHER, BROKEN = (0, 0), (0, 1), (1, 0), (1, 1)  # lanes [seed,
 IMPLEMENTATIONS = ("native", "mjx")
 
 
-class Touching(NamedTuple):
-    """A robot that touches something, unless it is lifted."""
-
-    geoms: tuple[str, ...]  # that touch each other
-    heights: tuple[int, ...]  # indices in qpos that the lifted lane raises
-    lift: float = 10.0  # [m]; more for longer decisions
-
-
-TOUCH = {
-    "halfcheetah": Touching(("floor",), (1,)),
-    "hopper": Touching(("floor",), (1,)),
-    "walker2d": Touching(("floor",), (1,)),
-    "ant": Touching(("floor",), (2,)),
-    "humanoid": Touching(("floor",), (2,)),
-    "sawyer_push": Touching(("rod", "cube"), (9,), 30.0),
-    "panda_stack": Touching(("left_pad", "block"), (11, 18), 30.0),
+TOUCH = {  # geoms that touch each other; what the lifted lane raises in qpos, and how far [m]
+    **dict.fromkeys(("halfcheetah", "hopper", "walker2d"), (("floor",), (1,), 10.0)),
+    **dict.fromkeys(("ant", "humanoid"), (("floor",), (2,), 10.0)),
+    "sawyer_push": (("rod", "cube"), (9,), 30.0),
+    "panda_stack": (("left_pad", "block"), (11, 18), 30.0),
 }
 
 
@@ -62,35 +51,7 @@ def make(task, /, implementation="native", **fields):
 
 
 def task_of(env):
-    return next(name for name, kind in TASKS.items() if isinstance(env, kind))
-
-
-def observe(task, data, state):
-    """The observation that the task's source defines, from MuJoCo's `data`."""
-    qpos, qvel = data.qpos, data.qvel
-    match task:
-        case "cartpole":
-            return np.array([qpos[0], qvel[0], np.cos(qpos[1]), np.sin(qpos[1]), qvel[1]])
-        case "ant" | "humanoid":
-            return np.concatenate([qpos[2:], qvel])
-        case "quadcopter":
-            rotation = data.body("quadcopter").xmat.reshape(3, 3)  # updated in `reference`
-            away = np.asarray(state.info["target"]) - qpos[:3]
-            parts = rotation.T @ [0, 0, -9.81], qvel[3:], rotation.T @ qvel[:3], rotation.T @ away
-            return np.concatenate(parts)
-        case "sawyer_push":
-            tip, target = data.site("tip").xpos[:2], np.asarray(state.info["target"])
-            return 10 * np.concatenate([qpos[7:9] - tip, qpos[7:9] - target])
-        case "panda_stack":
-            closed = data.ctrl[7:] < 0.02
-            return np.concatenate([data.site("tool").xpos, qpos[9:12], closed, data.sensordata])
-        case "sawyer_torque":
-            neutral = np.array([0, -1.18, 0, 2.18, 0, 0.57, 3.3161, *np.zeros(7)])
-            return np.concatenate([qpos, qvel, neutral, neutral])
-        case "sprk":
-            return np.concatenate([qpos, qvel])
-    clipped = task in ("hopper", "walker2d")
-    return np.concatenate([qpos[1:], np.clip(qvel, -10, 10) if clipped else qvel])
+    return next(name for name, kind in TASKS.items() if type(env) is kind)
 
 
 def actions(env):
@@ -207,22 +168,24 @@ def shown(env, state):
     return placed(scenery.scene_of(env), scenery.pose_of(env)(state))[1]
 
 
-def reference(task, implementation, lane):
-    """Observations [DECISIONS, o] of MuJoCo C in float64, stepped by mj_step alone.
+def reference(env, lane):
+    """qpos and qvel [DECISIONS, nq + nv] of MuJoCo C in float64, stepped by mj_step alone.
 
     Controls are the actions, or those that the environment computed from them.
     """
-    env = make(task, implementation)
     state, path = start(env), rollout(env)
     model = mjcf.load(state.data.asset)
-    steps = round(env.spec.dt / model.opt.timestep)
-    data = mujoco.MjData(model)
+    data, moved = mujoco.MjData(model), []
     data.qpos[:], data.qvel[:] = state.data.qpos[lane], state.data.qvel[lane]
-    controls = path.data.ctrl if task in COMPUTED else actions(env)
-    observed = []
-    for t, ctrl in enumerate(np.asarray(controls)[lane]):
-        data.ctrl[:] = ctrl
-        mujoco.mj_step(model, data, steps)
-        mujoco.mj_kinematics(model, data)
-        observed.append(observe(task, data, jax.tree.map(lambda a, t=t: a[(*lane, t)], path)))
-    return np.array(observed)
+    controls = path.data.ctrl if task_of(env) in COMPUTED else actions(env)
+    for data.ctrl[:] in np.asarray(controls)[lane]:
+        mujoco.mj_step(model, data, round(env.spec.dt / model.opt.timestep))
+        moved.append(np.concatenate([data.qpos, data.qvel]))
+    return np.array(moved)
+
+
+def apart(env, lane):
+    """The largest difference [m, rad, m/s, rad/s] from `reference` along the rollout."""
+    data = rollout(env).data
+    own = np.concatenate([data.qpos[lane], data.qvel[lane]], -1)
+    return np.abs(own - reference(env, lane)).max()
