@@ -89,7 +89,7 @@ def curves(
         time = x if x in TIMES else "step"
         every = [each for run in members for each in learners(run, metric, time)]
         groups[key] = [each for each in every if each.counts]
-        notes[key] = [*_without_metric(metric, every), *_truncated(members)]
+        notes[key] = _without_metric(metric, every)
     if not any(np.isfinite(each.y).any() for members in groups.values() for each in members):
         raise _no_metric(folders, metric)
     for task in {task for (task, _), members in groups.items() if members}:
@@ -209,11 +209,6 @@ def _without_metric(metric: str, every: list[Learner]) -> list[str]:
     if len(without) == len(every):
         return [f"no {metric}"]
     return [f"seed {one.seed} of {one.run} has no {metric} yet; left out" for one in without]
-
-
-def _truncated(members: list[RunFolder]) -> list[str]:
-    """A note for each run whose last row is incomplete."""
-    return [f"the last row of {run.path} is incomplete; left out" for run in members if run.cut]
 
 
 def _no_metric(folders: list[RunFolder], metric: str) -> UsageError:

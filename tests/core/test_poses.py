@@ -123,13 +123,6 @@ def test_a_shift_near_one_stays_within_the_particles() -> None:
     assert int(drawn.max()) == 1
 
 
-@pytest.mark.parametrize("w", [np.full(5, 0.2), np.eye(5)[2], np.array([0.5, 0.5, 0, 0, 0])])
-def test_effective_number(w) -> None:
-    with np.errstate(divide="ignore"):
-        log_w = jnp.asarray(np.log(w) + 3.0)
-    assert float(poses.effective(log_w)) == pytest.approx(1 / (w**2).sum(), rel=1e-5)
-
-
 def test_circular_mean_is_the_argument_of_the_mean_of_unit_numbers() -> None:
     rng = np.random.default_rng(1)
     angle, w = np.pi + 0.3 * rng.normal(size=30), rng.dirichlet(np.ones(30))
