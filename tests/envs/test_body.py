@@ -140,6 +140,7 @@ def of_mujoco(name, factor, height):
     return data.qvel
 
 
+@pytest.mark.turns(2)
 @pytest.mark.parametrize("implementation", ["native", "mjx"])
 def test_each_field_that_an_episode_has_for_itself_acts_as_in_mujoco(implementation):
     """And sensors are those of the state.

@@ -4,9 +4,10 @@ import jax
 import jax.numpy as jnp
 import mujoco
 import numpy as np
-from experts import EXPERTS, over_implementations, play
-from worlds import jitted, make, many, placed
+import pytest
+from worlds import IMPLEMENTATIONS, jitted, make, many, placed, play
 
+from hybrid_rl.envs.experts.push import PushController
 from hybrid_rl.envs.mujoco.kinematics import rotate_towards
 from hybrid_rl.envs.sawyer_push import ASSET, EXTRA, HEIGHT, HOME, TIP, SawyerPush
 
@@ -126,9 +127,9 @@ def test_push_starts_keep_their_distances():
     assert not states.terminated.any()
 
 
-@over_implementations("sawyer_push")
+@pytest.mark.parametrize("implementation", IMPLEMENTATIONS, ids="sawyer_push-{}".format)
 def test_the_expert_pushes_the_block_to_the_target(implementation):
-    path = play(make("sawyer_push", implementation), EXPERTS["sawyer_push"], 100)[1]
+    path = play(make("sawyer_push", implementation), PushController(), 100)[1]
     assert path.metrics["success"].any(1).all()
     height = path.data.qpos[..., 9]
     assert jnp.abs(height - HEIGHT).max() < 2e-3  # the block neither tips nor jumps

@@ -13,6 +13,7 @@ from omegaconf import OmegaConf
 from hybrid_rl.envs.mujoco import mjcf, scenery
 from hybrid_rl.envs.sawyer_push import TIP
 from hybrid_rl.settings.groups import file, options
+from hybrid_rl.types import Params
 
 DECISIONS = 20
 FROM_OTHERS = {"gymnasium", "playground", "robot", "online"}  # tests of their own
@@ -189,3 +190,28 @@ def apart(env, lane):
     data = rollout(env).data
     own = np.concatenate([data.qpos[lane], data.qvel[lane]], -1)
     return np.abs(own - reference(env, lane)).max()
+
+
+@cache
+def play(env, expert, decisions):
+    """Actions [4, decisions, m] and states [4, decisions] of `expert` in four episodes.
+
+    Stepped by the program that the other tests of `env` compiled.
+    """
+    keys = jax.random.split(jax.random.key(1), 4).reshape(2, 2)
+    state = jax.vmap(jax.vmap(jitted(env, "reset")))(keys)
+    memory = jax.tree.map(lambda a: jnp.tile(a, (2, 2, 1)), expert.init(env.spec))
+
+    @jax.jit
+    @jax.vmap
+    @jax.vmap
+    def act(memory, obs):
+        return expert.act(Params(), memory, obs, jax.random.key(0))[:2]
+
+    path = []
+    for _ in range(decisions):
+        action, memory = act(memory, state.obs)
+        state = step_grid(env)(state, action)
+        path.append((action, state))
+    stacked = jax.tree.map(lambda *leaves: np.stack(leaves, 2), *path)
+    return jax.tree.map(lambda a: a.reshape(4, *a.shape[2:]), stacked)
