@@ -158,12 +158,6 @@ def area(curve: Curve, until: float = np.inf) -> np.ndarray:
     return np.trapezoid(y, np.array([0.0, *x[before], end]), axis=1) / end
 
 
-def steps_to(curve: Curve, threshold: float) -> np.ndarray:
-    """[S] the x at which each learner's metric first reaches `threshold`, or infinity."""
-    reached = curve.each >= threshold
-    return np.where(reached.any(1), curve.x[reached.argmax(1)], np.inf)
-
-
 def improvement(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float]:
     """P(X > Y) of scores [n] and [m], ties counting half, and its 95% bootstrap band.
 
