@@ -85,11 +85,11 @@ def curves(
     folders = [RunFolder(path) for path in find(runs)]
     groups: dict[Key, list[Learner]] = {}
     notes: dict[Key, list[str]] = {}
-    for key, members in _grouped(folders, x, group).items():
+    for key, (members, settings) in _grouped(folders, x, group).items():
         time = x if x in TIMES else "step"
         every = [each for run in members for each in learners(run, metric, time)]
         groups[key] = [each for each in every if each.counts]
-        notes[key] = _without_metric(metric, every)
+        notes[key] = [*settings, *_without_metric(metric, every)]
     if not any(np.isfinite(each.y).any() for members in groups.values() for each in members):
         raise _no_metric(folders, metric)
     for task in {task for (task, _), members in groups.items() if members}:
@@ -181,19 +181,23 @@ def _lines(notes: dict[Key, list[str]], drawn: list[Key]) -> dict[Key, list[str]
     return lines
 
 
-def _grouped(runs: Sequence[RunFolder], x: str, group: str) -> dict[Key, list[RunFolder]]:
-    """The runs of each curve."""
+def _grouped(
+    runs: Sequence[RunFolder], x: str, group: str
+) -> dict[Key, tuple[list[RunFolder], list[str]]]:
+    """The runs of each curve, and their settings if the label is a letter."""
     parts: dict[tuple[str, str, str], list[RunFolder]] = {}
     for run in runs:
         parts.setdefault((run.word("task"), run.word(group), run.word("algo")), []).append(run)
-    groups: dict[Key, list[RunFolder]] = {}
+    groups: dict[Key, tuple[list[RunFolder], list[str]]] = {}
     for (task, value, algo), members in parts.items():
         label = algo if group == "algo" else f"{group}={value}"
         if len([key for key in parts if key[:2] == (task, value)]) > 1:
             label += f" algo={algo}"
         differ = differences(members, [key for key in (x, group) if key not in TIMES])
-        for run, name in zip(members, short(differ), strict=True):
-            groups.setdefault((task, f"{label} {name}".strip()), []).append(run)
+        for run, name, more in zip(members, short(differ), differ, strict=True):
+            settings = ", ".join(f"{key}={shown}" for key, shown in more.items())
+            lines = [settings] if settings and "=" not in name else []
+            groups.setdefault((task, f"{label} {name}".strip()), ([], lines))[0].append(run)
     return groups
 
 

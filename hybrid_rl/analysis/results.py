@@ -30,6 +30,7 @@ NOT_SETTINGS = {
 }
 IMPLEMENTATION = ".physics"  # ending of the keys that choose one of the same equations
 UNSET, SET = "unset", "set"  # for a key that only some of the runs have, and for a group of keys
+MOST_KEYS, MOST_CHARACTERS = 3, 40  # of a label; beyond that it is a letter
 
 
 @dataclass(frozen=True)
@@ -178,14 +179,18 @@ def differences(runs: Sequence[RunFolder], expected: Sequence[str] = ()) -> list
 
 
 def short(differing: Sequence[Mapping[str, str]]) -> list[str]:
-    """A label for each set of settings, by the ends of their keys: "reward=pybullet"."""
+    """A label for each set of settings: "reward=pybullet", or A, B, ... if that would be long."""
     keys = list(dict.fromkeys(key for each in differing for key in each))
     shown = {key: _ending(key, keys) for key in keys}
-    return [" ".join(f"{shown[k]}={v}" for k, v in each.items()) for each in differing]
+    labels = [" ".join(f"{shown[k]}={v}" for k, v in each.items()) for each in differing]
+    if len(keys) <= MOST_KEYS and all(len(label) <= MOST_CHARACTERS for label in labels):
+        return labels
+    order = sorted(set(labels))
+    return [_letters(order.index(label)) for label in labels]
 
 
 def labels(folders: list[Path]) -> list[str]:
-    """The method of each run, with the settings in which its runs differ; or else its folder."""
+    """The method of each run, with the settings in which its runs differ, or else its folder."""
     runs = [RunFolder(folder) for folder in folders]
     algos = [run.word("algo") for run in runs]
     result = [""] * len(runs)
@@ -193,7 +198,7 @@ def labels(folders: list[Path]) -> list[str]:
         group = [i for i, other in enumerate(algos) if other == algo]
         words = short(differences([runs[i] for i in group]))
         for i, more in zip(group, words, strict=True):
-            result[i] = f"{algo} {more}".strip()
+            result[i] = f"{algo} {more}".strip() if "=" in more or not more else folders[i].name
     return [
         label if result.count(label) == 1 else str(folder)
         for label, folder in zip(result, folders, strict=True)
@@ -207,6 +212,11 @@ def _ending(key: str, keys: Sequence[str]) -> str:
     others = [other for other in keys if other != key]
     unique = (end for end in endings if not any(f".{o}".endswith(f".{end}") for o in others))
     return next(unique, key)
+
+
+def _letters(number: int) -> str:
+    """A, B, ..., Z, A1, B1, ..."""
+    return chr(ord("A") + number % 26) + (str(number // 26) if number >= 26 else "")
 
 
 def _column(settings: Sequence[Mapping[str, Any]], key: str) -> tuple[str, ...]:

@@ -21,6 +21,14 @@ def test_runs_of_other_settings_are_other_curves(tmp_path):
     ]
 
 
+def test_many_differences_become_letters_with_a_note(tmp_path):
+    for seed in range(2):
+        run(tmp_path / str(seed), [1.0], seed, **dict.fromkeys("uvwxy", 10 * seed))
+    one, two = curves(tmp_path)
+    assert (one.label, two.label) == ("sac A", "sac B")
+    assert one.notes == ("hopper, sac A: u=0, v=0, w=0, x=0, y=0",)
+
+
 def test_groups_are_tasks_and_algorithms_or_any_key(tmp_path):
     run(tmp_path / "a", [1.0], algo="sac", num_envs=4, replay="{capacity: 5}")
     run(tmp_path / "b", [2.0], algo="nn_mppi", num_envs=4, replay="{capacity: 6}")
