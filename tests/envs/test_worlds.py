@@ -27,6 +27,7 @@ from worlds import (
     apart,
     jitted,
     make,
+    many,
     rollout,
     shown,
     start,
@@ -137,6 +138,16 @@ def test_dynamics_rest_at_the_equilibrium_and_are_those_of_a_step(env):
         paid = jitted(env, "reward_of")(state.obs, u, after.obs)
         np.testing.assert_allclose(after.reward, paid, rtol=1e-5)
         assert float(after.reward) != 0
+
+
+@pytest.mark.parametrize("task", [t for t, kind in TASKS.items() if hasattr(kind, "reference")])
+def test_a_reference_comes_true(task):
+    """What is next at one decision is now at the one after; at the equilibrium both are there."""
+    env, n = make(task), STATE[task]
+    now, later = many(env, "reference")(jnp.asarray(rollout(env).obs[TOUCHING]))
+    np.testing.assert_allclose(now[1:, :n], later[:-1, :n], atol=1e-6)
+    x, _ = env.equilibrium()
+    np.testing.assert_array_equal(env.reference(x)[0], x)
 
 
 POINTS = {

@@ -30,6 +30,8 @@ FIELDS = {
     "humanoid": {"integrator": "euler"},
     "quadcopter": {"task": "track", "damping": True},
     "panda_stack": {"grip": "action"},
+    "sprk_sand": {"learn": 3},
+    "sawyer_torque": {"learn": 3},
 }
 ARMS = ("sawyer_push", "panda_stack")  # controls depend on states
 COMPUTED = (*ARMS, "quadcopter", "humanoid")  # controls are not the actions
