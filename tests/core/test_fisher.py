@@ -62,14 +62,6 @@ def test_information_of_a_linear_model_is_that_of_its_regression() -> None:
     np.testing.assert_allclose(flat.T @ flat, np.kron(z.T @ z, np.diag(SIGMA**-2)), atol=1e-12)
 
 
-def test_information_of_one_decision_of_a_linear_model_is_the_gain_of_its_regression() -> None:
-    """n log(1 + s' S s / sigma^2), the objective of chapter 7, for a diagonal S."""
-    s, S = RNG.normal(size=3), RNG.uniform(0.5, 2.0, 3)
-    F = jnp.asarray(np.kron(np.eye(N), s)[None])
-    value = fisher.log_det(F, jnp.full(N, 0.3), jnp.asarray(np.tile(1 / S, N)))
-    np.testing.assert_allclose(value, N * np.log(1 + (S * s**2).sum() / 0.09), rtol=1e-12)
-
-
 def test_sensitivities_by_path_are_derivatives_of_the_rolled_out_states() -> None:
     """By forward mode through the whole path, with open-loop actions."""
     step, theta = network()
