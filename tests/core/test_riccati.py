@@ -93,6 +93,15 @@ def test_doubling_is_the_recursion(steps: int) -> None:
     np.testing.assert_allclose(doubled, P, rtol=1e-8)
 
 
+def test_a_long_horizon_is_the_algebraic_equation() -> None:
+    """2^10 steps, against SciPy."""
+    with jax.enable_x64(True):
+        A, B, _, R = map(jnp.asarray, SYSTEM)
+        P = riccati.finite_horizon(*map(jnp.asarray, SYSTEM), 1024)
+        K = riccati.gain(A, B, P, R)
+    np.testing.assert_allclose(K, riccati.regulator(*SYSTEM).gain, rtol=1e-6)
+
+
 def test_a_mode_out_of_reach_has_a_finite_cost() -> None:
     """It grows by 1.1 a decision, where SciPy finds no stabilising solution."""
     A, B = np.diag([0.9, 1.1]), np.array([[1.0], [0.0]])
