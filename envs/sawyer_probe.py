@@ -23,7 +23,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs.analytic.contact_plane import ContactPlane
+from hybrid_rl.envs.analytic.contact_plane import ContactPlane, metrics_of
 from hybrid_rl.envs.analytic.point_mass import DT, move
 from hybrid_rl.envs.mujoco import mjcf, rounded_boxes
 from hybrid_rl.envs.mujoco.kinematics import (
@@ -76,9 +76,8 @@ class SawyerProbe:
 
     @cached_property
     def _plane(self) -> ContactPlane:
-        return ContactPlane(
-            self.objects, self.acceleration, self.drag, self.radius, self.low, self.high, self.theta
-        )
+        names = "objects", "acceleration", "drag", "radius", "low", "high", "theta"
+        return ContactPlane(**{name: getattr(self, name) for name in names})
 
     @cached_property
     def asset(self) -> str:
@@ -158,9 +157,7 @@ class SawyerProbe:
     def _state(self, data: PhysicsState, touch: Array, info: dict[str, Array]) -> EnvState:
         tip, _, jacobian = TIP.pose(data.qpos)
         obs = jnp.concatenate([tip[:2], jacobian[:2] @ data.qvel])
-        x, y, angle = info["pose"]
-        metrics = {"touch": touch, "pose_x": x, "pose_y": y, "pose_angle": angle}
-        return EnvState(data, obs, touch, metrics=metrics, info=info)
+        return EnvState(data, obs, touch, metrics=metrics_of(touch, info["pose"]), info=info)
 
     def distance(self, s: Array, pose: Array | None = None) -> Array:
         """Signed distance [] [m] of s [2] to the nearest surface; `pose` [3] is theta."""

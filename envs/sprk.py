@@ -21,6 +21,7 @@ quick movements). Radius and mass: those of Sphero's SPRK+, not verified; a, b, 
 the threshold and the contact's stiffness are our choice.
 """
 
+from dataclasses import KW_ONLY
 from functools import cached_property
 from typing import Literal
 
@@ -28,13 +29,13 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core.poses import rotated
-from hybrid_rl.envs.analytic.contact_plane import THREE, ContactPlane
+from hybrid_rl.core.poses import from_map, rotated, to_map
+from hybrid_rl.envs.analytic.contact_plane import ContactPlane, metrics_of
 from hybrid_rl.envs.analytic.point_mass import DT, move
 from hybrid_rl.envs.mujoco import mjcf, rounded_boxes
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, Simulator
-from hybrid_rl.fields import Discount, NotNegative, Positive, part
-from hybrid_rl.types import EnvState, Spec
+from hybrid_rl.fields import NotNegative, Positive, part
+from hybrid_rl.types import EnvState
 
 SLIDING, ROLLING = "sprk.xml", "sprk_rolling.xml"
 SHELL = 2 / 3  # moment of inertia of a shell / (m r^2)
@@ -42,41 +43,20 @@ TIMESTEP = 1 / 300  # [s]
 READINGS, STEPS = 15, 2  # of the touch sensor in a decision; physics steps of a reading
 MEANS = 3  # of the accelerometer in a decision: 30 Hz
 HALF = 0.1  # [m] half height of the objects
-PLANE = (  # fields that contact_plane has, too
-    *("objects", "acceleration", "drag", "radius", "low", "high", "theta", "spread"),
-    *("false_contact", "missed"),
-)
 
 
 @part
-class Sprk:
+class Sprk(ContactPlane):
     """A ball among objects; `physics` is native, mjx, warp or auto."""
 
     physics: Simulator = "auto"
-    objects: tuple[tuple[float, ...], ...] = THREE
-    acceleration: Positive = 1.0  # [m/s^2] a
-    drag: NotNegative = 0.0  # [1/s] b
+    _: KW_ONLY
     radius: Positive = 0.0365  # [m] of the ball
     mass: Positive = 0.18  # [kg] m
     lag: NotNegative = 0.01  # [s] of the motor; 0: none
     rolling: bool = False  # driven by torques on a floor, which it rolls on; else pushed
-    low: tuple[float, float] = (0.0, 0.0)  # [m]
-    high: tuple[float, float] = (1.0, 1.0)
-    theta: tuple[float, float, float] | None = None  # [m, m, rad]; None: the reference arrangement
-    spread: tuple[float, float, float] = (0.0, 0.0, 0.0)  # of theta at the reset
     sensor: Literal["touch", "accelerometer"] = "touch"
     threshold: Positive = 0.5  # [m/s^2] of the accelerometer
-    false_contact: Discount = 0.0  # probability for |u - u_before| = 2, besides the sensor's own
-    missed: Discount = 0.0  # probability
-
-    spec = Spec(obs=4, act=2, dt=DT)
-
-    def __post_init__(self) -> None:
-        _ = self._plane  # whose fields it checks
-
-    @cached_property
-    def _plane(self) -> ContactPlane:
-        return ContactPlane(**{name: getattr(self, name) for name in PLANE})
 
     @cached_property
     def asset(self) -> str:
@@ -105,11 +85,11 @@ class Sprk:
 
     def reset(self, key: Array) -> EnvState:
         """A random position and pose, those of `contact_plane` for the same key."""
-        x, u, pose, noise = self._plane.reset(key).data
-        p = rotated(x[:2] - pose[:2], -pose[2]) + self._plane.middle
+        x, u, pose, noise = self._start(key)
+        p = to_map(pose, x[:2], self.middle)
         data = self._at(p, jnp.zeros(2))
         info = {"pose": pose, "action": u, "noise": noise}
-        return self._state(data, jnp.zeros(()), jnp.zeros(()), info)
+        return self._seen(data, jnp.zeros(()), jnp.zeros(()), info)
 
     def _at(self, p: Array, v: Array) -> PhysicsState:
         """The ball at p [2] with velocity v [2], in the frame of the objects."""
@@ -136,10 +116,10 @@ class Sprk:
         )
         felt = touch if self.sensor == "touch" else jolt
         noise, drawing = jax.random.split(jax.random.wrap_key_data(info["noise"]))
-        measured = self._plane.measured(felt, u - info["action"], drawing)
+        measured = self.measured(felt, u - info["action"], drawing)
         measured = jnp.where(jnp.isfinite(data.qpos).all(), measured, jnp.nan)
         info = {**info, "action": u, "noise": jax.random.key_data(noise)}
-        return self._state(data, touch, measured, info)
+        return self._seen(data, touch, measured, info)
 
     def _jolt(self, v: Array, after: Array, u: Array) -> Array:
         """|mean acceleration - commanded| [m/s^2] from v [2] to `after` [2] at u [2]."""
@@ -147,23 +127,13 @@ class Sprk:
         free = move(jnp.concatenate([jnp.zeros(2), v]), self.acceleration * u, self.drag, time)[2:]
         return jnp.linalg.norm(after - free) / time
 
-    def _state(
+    def _seen(
         self, data: PhysicsState, touch: Array, measured: Array, info: dict[str, Array]
     ) -> EnvState:
         pose = info["pose"]
-        p = rotated(data.qpos[:2] - self._plane.middle, pose[2]) + pose[:2]
+        p = from_map(pose, data.qpos[:2], self.middle)
         obs = jnp.concatenate([p, rotated(data.qvel[:2], pose[2])])
-        x, y, angle = pose
-        metrics = {"touch": touch, "pose_x": x, "pose_y": y, "pose_angle": angle}
-        return EnvState(data, obs, measured, metrics=metrics, info=info)
-
-    def distance(self, s: Array, pose: Array | None = None) -> Array:
-        """Signed distance [] [m] of s [2] to the nearest surface; `pose` [3] is theta."""
-        return self._plane.distance(s, pose)
-
-    def scene(self) -> str:
-        """MJCF text of the scene for rendering."""
-        return self._plane.scene()
+        return EnvState(data, obs, measured, metrics=metrics_of(touch, pose), info=info)
 
     def pose(self, state: EnvState) -> Array:
         """theta and the position of the ball, qpos [5], for rendering."""

@@ -119,7 +119,7 @@ MUTANTS = {
         "tests/outside/test_host_loop.py",
     ),
     "an action is repeated beyond the end": Mutant(
-        "envs/adapters/copies.py",
+        "envs/adapters/external.py",
         "            if ended or cut:\n                break\n",
         "",
         "tests/outside/test_host_loop.py",

@@ -73,7 +73,9 @@ def test_robots_in_other_units_start_at_the_same_positions() -> None:
     """Also where the first candidates are in an object."""
     starts = []
     for factor in (1.0, 1e-3):
-        world = ContactPlane(scaled(factor), radius=0.03 * factor, high=(1.2 * factor, factor))
+        world = ContactPlane(
+            objects=scaled(factor), radius=0.03 * factor, high=(1.2 * factor, factor)
+        )
         keys = jax.random.split(jax.random.key(0), 64)
         starts.append(np.asarray(jax.jit(jax.vmap(world.reset))(keys).obs) / factor)
     np.testing.assert_allclose(*starts, rtol=1e-5)
@@ -85,7 +87,7 @@ def test_moves_of_poses_do_not_depend_on_units() -> None:
     for factor in (1.0, 1024.0):  # rounds as 1 does
         units = np.array([factor, factor, 1.0], np.float32)
         high = (1.2 * factor, factor)
-        world: Any = ContactPlane(scaled(factor), radius=0.03 * factor, high=high)
+        world: Any = ContactPlane(objects=scaled(factor), radius=0.03 * factor, high=high)
         known = KnownMap(world)
         frame = poses.Frame(*map(jnp.array, (world.low, high, known.middle, known.outline)))
         theta, contact = jnp.asarray(units) * jnp.array([0.5, 0.6, 2.0]), 0.4 * units[:2]

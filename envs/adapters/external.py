@@ -11,27 +11,33 @@ their model train on it; those that plan on the true dynamics do not.
 Source: Gymnasium's documentation, "Env", "AutoresetMode".
 """
 
-from collections.abc import Sequence
+import multiprocessing
+from collections.abc import Callable, Sequence
 from contextlib import suppress
-from functools import cache
+from functools import cache, cached_property
 from typing import Any, NamedTuple, NoReturn
 
 import gymnasium
 import numpy as np
 from gymnasium.spaces import Box, Dict, Space, flatdim, flatten
-from gymnasium.wrappers import FlattenObservation
+from gymnasium.vector import AsyncVectorEnv, AutoresetMode, SyncVectorEnv
+from gymnasium.wrappers import FlattenObservation, TimeLimit
 from jax import Array
 
-from hybrid_rl.envs.adapters.copies import Copies
 from hybrid_rl.envs.adapters.unstepped import Made, import_named, registered
 from hybrid_rl.envs.trial import check
-from hybrid_rl.errors import FAULTS, UsageError, blame
+from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame
 from hybrid_rl.fields import Positive, part
 from hybrid_rl.protocols.contract import of_user
 from hybrid_rl.types import EnvState, Spec
 
+Numbers = np.ndarray | Array
+FLAGS = ("is_success", "success")  # in infos: what others call a success
+SILENT = 100  # level of Gymnasium's log
 ACTIONS = "they must be a Box with finite bounds, of one number or more"
 FORMS = "they must be numbers in a form that Gymnasium flattens: Box, Discrete, Dict, Tuple"
+PICTURE = "for a video, give it `def __init__(self, render_mode=None)` and a method `render` that "
+PICTURE += "returns a picture, an array [height, width, 3] of uint8"
 DT = 'add env.dt=0.05, the seconds of a decision, or metadata = {"render_fps": 20} to its class'
 
 
@@ -64,6 +70,11 @@ class External(Made):
     def spec(self) -> Spec:
         """Its sizes, and the time between decisions."""
         return self.known.spec
+
+    @property
+    def apart(self) -> bool:
+        """Whether each copy has a process of its own."""
+        return self.processes or self.timeout_s is not None
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
@@ -104,9 +115,148 @@ class External(Made):
 
     def copies(
         self, seeds: Sequence[int], steps: int, repeat: int = 1, render_mode: str | None = None
-    ) -> Copies:
+    ) -> "Copies":
         """One copy for each seed; steps: decisions until the time limit of each."""
         return Copies(self, seeds, steps, repeat, render_mode)
+
+
+class Outcome(NamedTuple):
+    """One decision in N environments."""
+
+    obs: Numbers  # [N, o] float32, the true last ones where an episode ended
+    reward: Numbers  # [N] float32
+    terminated: Numbers  # [N] bool
+    truncated: Numbers  # [N] bool: only the time limit ended the episode
+    following: Numbers  # [N, o] float32, those of a new episode where one ended
+
+
+class Copies:
+    """N copies of an environment, which step side by side."""
+
+    success: np.ndarray | None = None  # [N], if the last decision's infos say so
+
+    def __init__(
+        self, env: External, seeds: Sequence[int], steps: int, repeat: int, render_mode: str | None
+    ) -> None:
+        self.env, self.steps, self.repeat, self.render_mode = env, steps, repeat, render_mode
+        self._seeds: list[Any] = list(map(int, seeds))
+
+    def _one(self) -> gymnasium.Env:
+        """A copy that takes decisions, of which `steps` make an episode."""
+        return TimeLimit(Repeated(self.env.one(self.render_mode), self.repeat), self.steps)
+
+    @cached_property
+    def _vector(self) -> Any:
+        makers = [self._one for _ in self._seeds]
+        if self.env.apart:
+            return AsyncVectorEnv(makers, context="spawn", autoreset_mode=AutoresetMode.DISABLED)
+        return SyncVectorEnv(makers, copy=False, autoreset_mode=AutoresetMode.DISABLED)
+
+    def reset(self) -> np.ndarray:
+        """The first observations [N, o]; the first call seeds the environments."""
+        obs = self._observed("reset", lambda: self._vector.reset(seed=self._seeds))[0]
+        self._seeds = [None for _ in self._seeds]  # a seed at each reset would repeat one start
+        return obs
+
+    def step(self, u: np.ndarray) -> Outcome:
+        """Actions u [N, m] in [-1, 1]; where an episode ends, another one begins.
+
+        Raises:
+            WorldError: if the environment raises an error, gives NaN, or takes too long.
+        """
+        low, high = self.env.bounds
+        share = (np.clip(np.asarray(u, np.float32), -1, 1) + 1) / 2
+        space = self.env.known.space
+        actions = (low + share * (high - low)).reshape(-1, *space.shape)
+        actions = (np.rint(actions) if space.dtype.kind in "iu" else actions).astype(space.dtype)
+        obs, paid, ended, cut, infos = self._observed("step", lambda: self._stepped(actions))
+        if not np.isfinite(paid).all():
+            raise WorldError(f"{self.env.name}: step: gives a reward that is not finite")
+        given = [np.asarray(infos[name]) for name in FLAGS if name in infos]
+        self.success = given[0].astype(bool).reshape(len(paid), -1).any(1) if given else None
+        following = obs
+        if (done := ended | cut).any():
+            options = {"reset_mask": done}
+            fresh = self._observed("reset", lambda: self._vector.reset(options=options))[0]
+            following = np.where(done[:, None], fresh, obs)
+        return Outcome(obs, np.asarray(paid, np.float32), ended, cut & ~ended, following)
+
+    def picture(self) -> np.ndarray:
+        """The first environment [height, width, 3] (uint8), with render_mode="rgb_array"."""
+        found = self._call("render", lambda: self._vector.render()[0])
+        if not (isinstance(found, np.ndarray) and found.ndim == 3):
+            line = f"{self.env.name}: render: returns {type(found).__name__}"
+            raise WorldError(f"{line}; {PICTURE}")
+        return found[: found.shape[0] // 2 * 2, : found.shape[1] // 2 * 2]
+
+    def close(self) -> None:
+        """End the environments, and their processes."""
+        if "_vector" in vars(self):
+            vars(self).pop("_vector").close()
+
+    def _stepped(self, actions: np.ndarray) -> tuple:
+        """What the vector's `step` returns, within the limit of time."""
+        if not self.env.apart:
+            return self._vector.step(actions)
+        self._vector.step_async(actions)
+        limit = self.env.timeout_s
+        return self._vector.step_wait(None if limit is None else limit * self.repeat)
+
+    def _observed(self, method: str, call: Callable[[], Any]) -> list[Any]:
+        """What `call` of a method returns, with a copy of the observations as float32 [N, o]."""
+        obs, *rest = self._call(method, call)
+        obs = np.array(obs, np.float32)  # the environment may overwrite its own
+        if not np.isfinite(obs).all():
+            entry = int(np.argwhere(~np.isfinite(obs))[0, 1])
+            raise WorldError(f"{self.env.name}: {method}: entry {entry} of obs is not finite")
+        return [obs, *rest]
+
+    def _call(self, method: str, call: Callable[[], Any]) -> Any:
+        """The result of a method of the environments; an error is one line."""
+        before = gymnasium.logger.min_level
+        if self.env.apart:  # Gymnasium's log has the traceback of what it raises again
+            gymnasium.logger.min_level = SILENT
+        try:
+            return call()
+        except UsageError:
+            raise
+        except FAULTS as error:
+            line = blame(error)
+            late = isinstance(error, multiprocessing.TimeoutError)
+            if late or (self.env.apart and isinstance(error, EOFError | ConnectionError)):
+                self._kill()
+                line = "its process ended, as where there is no memory left"
+                line = f"took longer than env.timeout_s={self.env.timeout_s}" if late else line
+            raise WorldError(f"{self.env.name}: {method}: {line}") from error
+        finally:
+            gymnasium.logger.min_level = before
+
+    def _kill(self) -> None:
+        """End all processes, also those that are stopped or do not answer."""
+        if (vector := vars(self).pop("_vector", None)) is None:  # a process failed to start
+            return
+        for process in vector.processes:
+            process.kill()
+            process.join()
+        vector.closed = True  # its own `close` would ask them
+
+
+class Repeated(gymnasium.Wrapper):
+    """Takes each action for several steps, or until its episode ends; their rewards are added."""
+
+    def __init__(self, env: gymnasium.Env, repeat: int) -> None:
+        super().__init__(env)
+        self.repeat = repeat
+
+    def step(self, action: Any) -> Any:
+        """The last step, with the reward of all."""
+        paid = 0.0
+        for _ in range(self.repeat):
+            obs, reward, ended, cut, info = self.env.step(action)
+            paid += float(reward)
+            if ended or cut:
+                break
+        return obs, paid, ended, cut, info
 
 
 class Known(NamedTuple):

@@ -40,10 +40,9 @@ class CartDoublePendulum(Euclidean):
 
     spec = Spec(obs=6, act=1, dt=DT)
 
-    def reset(self, key: Array) -> EnvState:
-        """A random initial state."""
-        x = jax.random.uniform(key, (), jnp.float32, -0.8, 0.8)
-        return fully_observed(jnp.zeros(6).at[0].set(x), jnp.float32(0.0))
+    def initial(self, key: Array) -> Array:
+        """A random initial observation [6]."""
+        return jnp.zeros(6).at[0].set(jax.random.uniform(key, (), jnp.float32, -0.8, 0.8))
 
     def _state(self, x: Array, reward: Array, info: dict[str, Array]) -> EnvState:
         return fully_observed(x, reward, jnp.any(jnp.abs(x[1:3]) > jnp.pi / 2))
@@ -57,10 +56,6 @@ class CartDoublePendulum(Euclidean):
     def dynamics(self, x: Array, u: Array) -> Array:
         """The next observation [6] after action u [1] at x [6]."""
         return rk4(lambda x: _rate(x, FORCE * u[0]), x, DT)
-
-    def equilibrium(self) -> tuple[Array, Array]:
-        """Both rods upright, the cart in the middle of the rail."""
-        return jnp.zeros(6), jnp.zeros(1)
 
     scene = mjcf.scene("cart_double_pendulum.xml")
 

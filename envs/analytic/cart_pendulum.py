@@ -46,10 +46,9 @@ class CartPendulum(Euclidean):
         """Observation size, action size and decision interval."""
         return Spec(obs=4, act=1, dt=self.dt)
 
-    def reset(self, key: Array) -> EnvState:
-        """A random initial state."""
-        x = jax.random.uniform(key, (4,), jnp.float32, -self.start, self.start)
-        return self._state(x, jnp.float32(0.0), {})
+    def initial(self, key: Array) -> Array:
+        """A random initial observation [4]."""
+        return jax.random.uniform(key, (4,), jnp.float32, -self.start, self.start)
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state after one decision. action: [1] in [-1, 1]."""
@@ -66,9 +65,8 @@ class CartPendulum(Euclidean):
 
     def dynamics(self, x: Array, u: Array) -> Array:
         """The next observation [4] after action u [1] at x [4]."""
-        for _ in range(SUBSTEPS):
-            x = rk4(lambda x: self._rate(x, self.force * u[0]), x, self.dt / SUBSTEPS)
-        return x
+        dt = self.dt / SUBSTEPS
+        return rk4(lambda x: self._rate(x, self.force * u[0]), x, dt, SUBSTEPS)
 
     def _rate(self, x: Array, u: Array) -> Array:
         """Time derivative [4] of the state x [4] under the force u [] [N]."""
@@ -79,10 +77,6 @@ class CartPendulum(Euclidean):
         det = total * inertia - (moment * cos) ** 2
         turn = (total * torque - moment * cos * push) / det
         return jnp.stack([x[2], x[3], turn, (inertia * push - moment * cos * torque) / det])
-
-    def equilibrium(self) -> tuple[Array, Array]:
-        """The rod upright, the cart in the middle of the rail."""
-        return jnp.zeros(4), jnp.zeros(1)
 
     def scene(self) -> str:
         """MJCF text of the scene for rendering."""

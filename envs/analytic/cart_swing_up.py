@@ -44,10 +44,9 @@ class CartSwingUp(Euclidean):
 
     spec = Spec(obs=4, act=1, dt=SUBSTEPS * DT)
 
-    def reset(self, key: Array) -> EnvState:
-        """A random initial state: the rod hangs."""
-        x = jnp.array([jnp.pi, 0, 0, 0]) + self.start * jax.random.normal(key, (4,))
-        return self._state(x, jnp.float32(0.0), {})
+    def initial(self, key: Array) -> Array:
+        """A random initial observation [4]: the rod hangs."""
+        return jnp.array([jnp.pi, 0, 0, 0]) + self.start * jax.random.normal(key, (4,))
 
     def _state(self, x: Array, reward: Array, info: dict[str, Array]) -> EnvState:
         upright = (jnp.cos(x[0]) > UPRIGHT).astype(jnp.float32)
@@ -72,10 +71,6 @@ class CartSwingUp(Euclidean):
             rate = jnp.stack([x[2], x[3], turn, push - self.friction * x[3]])
             x = x + DT * rate
         return x
-
-    def equilibrium(self) -> tuple[Array, Array]:
-        """The rod upright, the cart in the middle of the rail."""
-        return jnp.zeros(4), jnp.zeros(1)
 
     def scene(self) -> str:
         """MJCF text of the scene for rendering."""

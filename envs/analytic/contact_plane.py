@@ -19,13 +19,14 @@ Source: thesis sections 5.3 and 5.4: a second-order point among fixed objects, f
 quick movements. Objects, their sizes, a, b and the error rates are our choice.
 """
 
+from dataclasses import KW_ONLY
 from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core.poses import rotated
+from hybrid_rl.core.poses import rotated, to_map
 from hybrid_rl.envs.analytic.point_mass import DT, move
 from hybrid_rl.envs.mujoco import mjcf, rounded_boxes
 from hybrid_rl.fields import Discount, FieldError, NotNegative, Positive, part
@@ -54,6 +55,7 @@ class Body(NamedTuple):
 class ContactPlane:
     """A ball among objects, with a binary contact sensor."""
 
+    _: KW_ONLY
     objects: tuple[tuple[float, ...], ...] = THREE
     acceleration: Positive = 1.0  # [m/s^2] a
     drag: NotNegative = 0.0  # [1/s] b
@@ -80,6 +82,11 @@ class ContactPlane:
 
     def reset(self, key: Array) -> EnvState:
         """A random position and pose."""
+        none = jnp.zeros(())
+        return self._state(self._start(key), none, none)
+
+    def _start(self, key: Array) -> Body:
+        """At rest and clear of the objects, whose pose is random."""
         posing, starting, noise = jax.random.split(key, 3)
         pose = jnp.append(self.middle, 0.0) if self.theta is None else jnp.array(self.theta)
         pose = pose + jnp.array(self.spread) * jax.random.uniform(posing, (3,), minval=-1, maxval=1)
@@ -88,9 +95,7 @@ class ContactPlane:
         gap = self.radius + CLEAR * jnp.min(high - low)
         clear = jax.vmap(lambda s: self.distance(s, pose))(starts) > gap
         x = jnp.concatenate([starts[jnp.argmax(clear)], jnp.zeros(2)])
-        body = Body(x, jnp.zeros(2), pose, jax.random.key_data(noise))
-        none = jnp.zeros(())
-        return self._state(body, none, none)
+        return Body(x, jnp.zeros(2), pose, jax.random.key_data(noise))
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state after one decision. action: [2] in [-1, 1]."""
@@ -128,14 +133,12 @@ class ContactPlane:
         return jnp.where(touches, jnp.concatenate([p, v]), x), touches
 
     def _state(self, body: Body, touch: Array, measured: Array) -> EnvState:
-        x, y, angle = body.pose
-        metrics = {"touch": touch, "pose_x": x, "pose_y": y, "pose_angle": angle}
-        return EnvState(body, body.x, measured, metrics=metrics)
+        return EnvState(body, body.x, measured, metrics=metrics_of(touch, body.pose))
 
     def distance(self, s: Array, pose: Array | None = None) -> Array:
         """Signed distance [] [m] of s [2] to the nearest surface; `pose` [3] is theta."""
         if pose is not None:
-            s = rotated(s - pose[:2], -pose[2]) + self.middle
+            s = to_map(pose, s, self.middle)
         each = [rounded_box(s, *shape) for shape in self.objects]
         return jnp.min(jnp.stack(each)) if each else jnp.float32(jnp.inf)
 
@@ -153,6 +156,12 @@ class ContactPlane:
     def pose(self, state: EnvState) -> Array:
         """theta and the position of the ball, qpos [5], for rendering."""
         return jnp.concatenate([state.data.pose, state.obs[:2]])
+
+
+def metrics_of(touch: Array, pose: Array) -> dict[str, Array]:
+    """The metrics of a true contact `touch` [] at theta = `pose` [3]."""
+    x, y, angle = pose
+    return {"touch": touch, "pose_x": x, "pose_y": y, "pose_angle": angle}
 
 
 def rounded_box(

@@ -51,17 +51,16 @@ class Lander(Euclidean):
         """The angle [rad] at which the task ends."""
         return -2 * math.pi * self.turns if self.task == "flip" else 0.0
 
-    def reset(self, key: Array) -> EnvState:
-        """At rest for a hover, else at a random state."""
+    def initial(self, key: Array) -> Array:
+        """The first observation [6]: at rest for a hover, else random."""
         x = math.sqrt(VARIANCE) * jax.random.normal(key, (6,), jnp.float32)
-        x = x if self.task == "flip" else jnp.zeros(6, jnp.float32)
-        none = jnp.zeros((), jnp.int32)
-        return self._state(x, jnp.float32(0.0), {"held": none, "turned": none})
+        return x if self.task == "flip" else jnp.zeros(6, jnp.float32)
 
     def _state(self, x: Array, reward: Array, info: dict[str, Array]) -> EnvState:
         """At x [6], after the decisions that `info` counts."""
         at_goal = jnp.abs(x[2] - self.goal) < ANGLE
         level = at_goal & (jnp.abs(x[1]) < HEIGHT)
+        info = {"held": jnp.zeros((), jnp.int32), "turned": jnp.zeros((), jnp.int32)} | info
         held = jnp.where(level, info["held"] + 1, 0)
         turned = info["turned"] | at_goal
         success = (held >= HOLD).astype(jnp.float32)

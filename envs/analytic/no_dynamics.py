@@ -15,7 +15,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.analytic.hills import phi
-from hybrid_rl.envs.analytic.state import Euclidean, fully_observed
+from hybrid_rl.envs.analytic.state import Euclidean
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.types import EnvState, Spec
 
@@ -28,10 +28,9 @@ class NoDynamics(Euclidean):
 
     spec = Spec(obs=1, act=1, dt=DT)
 
-    def reset(self, key: Array) -> EnvState:
-        """A random initial state."""
-        x = jax.random.uniform(key, (1,), jnp.float32, -0.8, 0.8)
-        return fully_observed(x, jnp.float32(0.0))
+    def initial(self, key: Array) -> Array:
+        """A random initial observation [1]."""
+        return jax.random.uniform(key, (1,), jnp.float32, -0.8, 0.8)
 
     def reward_of(self, x: Array, u: Array, after: Array) -> Array:
         """The reward [] of action u [1] at x [1], which led to `after` [1]."""
@@ -40,10 +39,6 @@ class NoDynamics(Euclidean):
     def dynamics(self, x: Array, u: Array) -> Array:
         """The next observation [1] after action u [1] at x [1]."""
         return u + 0 * x
-
-    def equilibrium(self) -> tuple[Array, Array]:
-        """The middle of the rail."""
-        return jnp.zeros(1), jnp.zeros(1)
 
     scene = mjcf.scene("no_dynamics.xml")
 

@@ -13,7 +13,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs.analytic.state import Euclidean, fully_observed
+from hybrid_rl.envs.analytic.state import Euclidean
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.fields import NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
@@ -32,10 +32,9 @@ class PointMass(Euclidean):
 
     spec = Spec(obs=4, act=2, dt=DT)
 
-    def reset(self, key: Array) -> EnvState:
-        """A random initial state."""
-        p = jax.random.uniform(key, (2,), jnp.float32)
-        return fully_observed(jnp.concatenate([p, jnp.zeros(2)]), jnp.float32(0.0))
+    def initial(self, key: Array) -> Array:
+        """A random initial observation [4]."""
+        return jnp.concatenate([jax.random.uniform(key, (2,), jnp.float32), jnp.zeros(2)])
 
     def reward_of(self, x: Array, u: Array, after: Array) -> Array:
         """The reward [] of action u [2] at x [4], which led to `after` [4]."""

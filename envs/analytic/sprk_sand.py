@@ -70,7 +70,8 @@ class SprkSand:
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state after one decision. action: [2] in [-1, 1]."""
         a = jnp.clip(action, -1.0, 1.0)
-        after = self._state(self._next(state.data, a), a, state.info[CLOCK] + 1)
+        ball = rk4(lambda ball: self._rate(ball, a), state.data, DT / SUBSTEPS, SUBSTEPS)
+        after = self._state(ball, a, state.info[CLOCK] + 1)
         after = sensor_noise.resume(after, self._std, state)
         if self.sensor_noise:
             v = (after.obs[:2] - state.obs[:2]) / DT
@@ -98,12 +99,6 @@ class SprkSand:
         x, y = 0.5 * jnp.cos(t) + 1.12, 0.3 * jnp.sin(2 * t) + 0.85
         v = jnp.stack([-0.5 * jnp.sin(t), 0.6 * jnp.cos(2 * t)])
         return jnp.concatenate([jnp.stack([x, y]), jnp.where(clock < self.learn, 0.0, v)])
-
-    def _next(self, ball: Ball, a: Array) -> Ball:
-        """The ball one decision later, under the command a [2]."""
-        for _ in range(SUBSTEPS):
-            ball = rk4(lambda ball: self._rate(ball, a), ball, DT / SUBSTEPS)
-        return ball
 
     def _rate(self, ball: Ball, a: Array) -> Ball:
         """Time derivatives under the command a [2]."""

@@ -66,9 +66,7 @@ class TwoLink:
 
     def _next(self, x: Array, u: Array) -> Array:
         """The next (q1, q1', q2, q2') [4] after action u [2] at x [4]."""
-        for _ in range(SUBSTEPS):
-            x = rk4(lambda x: self._rate(x, TORQUE * u), x, DT / SUBSTEPS)
-        return x
+        return rk4(lambda x: self._rate(x, TORQUE * u), x, DT / SUBSTEPS, SUBSTEPS)
 
     def _rate(self, x: Array, u: Array) -> Array:
         """Time derivative [4] of x [4] under the torques u [2] [N m]."""

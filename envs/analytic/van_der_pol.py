@@ -16,7 +16,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.analytic.integrate import rk4
-from hybrid_rl.envs.analytic.state import Euclidean, fully_observed
+from hybrid_rl.envs.analytic.state import Euclidean
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.fields import Positive, part
 from hybrid_rl.types import EnvState, Spec
@@ -33,10 +33,9 @@ class VanDerPol(Euclidean):
 
     spec = Spec(obs=2, act=1, dt=DT)
 
-    def reset(self, key: Array) -> EnvState:
-        """A random initial state."""
-        x = jax.random.uniform(key, (2,), jnp.float32, -self.start, self.start)
-        return fully_observed(x, jnp.float32(0.0))
+    def initial(self, key: Array) -> Array:
+        """A random initial observation [2]."""
+        return jax.random.uniform(key, (2,), jnp.float32, -self.start, self.start)
 
     def reward_of(self, x: Array, u: Array, after: Array) -> Array:
         """The reward [] of action u [1] at x [2], which led to `after` [2]."""
@@ -45,10 +44,6 @@ class VanDerPol(Euclidean):
     def dynamics(self, x: Array, u: Array) -> Array:
         """The next observation [2] after action u [1] at x [2]."""
         return rk4(lambda x: _rate(x, FORCE * u[0]), x, DT)
-
-    def equilibrium(self) -> tuple[Array, Array]:
-        """At rest at the origin."""
-        return jnp.zeros(2), jnp.zeros(1)
 
     scene = mjcf.scene("van_der_pol.xml")
 

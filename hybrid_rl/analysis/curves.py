@@ -89,7 +89,7 @@ def curves(
         time = x if x in TIMES else "step"
         every = [each for run in members for each in learners(run, metric, time)]
         groups[key] = [each for each in every if each.counts]
-        notes[key] = [*settings, *_without_metric(metric, every), *_truncated(members)]
+        notes[key] = [*settings, *_without_metric(metric, every)]
     if not any(np.isfinite(each.y).any() for members in groups.values() for each in members):
         raise _no_metric(folders, metric)
     for task in {task for (task, _), members in groups.items() if members}:
@@ -158,12 +158,6 @@ def area(curve: Curve, until: float = np.inf) -> np.ndarray:
     return np.trapezoid(y, np.array([0.0, *x[before], end]), axis=1) / end
 
 
-def steps_to(curve: Curve, threshold: float) -> np.ndarray:
-    """[S] the x at which each learner's metric first reaches `threshold`, or infinity."""
-    reached = curve.each >= threshold
-    return np.where(reached.any(1), curve.x[reached.argmax(1)], np.inf)
-
-
 def improvement(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float]:
     """P(X > Y) of scores [n] and [m], ties counting half, and its 95% bootstrap band.
 
@@ -213,11 +207,6 @@ def _without_metric(metric: str, every: list[Learner]) -> list[str]:
     if len(without) == len(every):
         return [f"no {metric}"]
     return [f"seed {one.seed} of {one.run} has no {metric} yet; left out" for one in without]
-
-
-def _truncated(members: list[RunFolder]) -> list[str]:
-    """A note for each run whose last row is incomplete."""
-    return [f"the last row of {run.path} is incomplete; left out" for run in members if run.cut]
 
 
 def _no_metric(folders: list[RunFolder], metric: str) -> UsageError:

@@ -10,9 +10,9 @@ figure from its JSON. out=FILE.csv writes a table instead, a value of a seed in 
 columns exp_name, env_name, seed, metric, env_step, value (hybrid_rl.analysis.tables);
 others=FILE.csv draws the curves of such a table, of another library's runs, beside these.
 
-The summary has the last value, the mean over the run (the area under the curve), the decisions to
-reach threshold=, and in which share of pairs of seeds one method is ahead of another. Notes on
-missing values and failed seeds are in the picture and in the JSON.
+The summary has the last value, the mean over the run (the area under the curve), and in which share
+of pairs of seeds one method is ahead of another. Notes on missing values and failed seeds are in
+the picture and in the JSON.
 """
 
 import itertools
@@ -28,10 +28,8 @@ from hybrid_rl.analysis.curves import (
     area,
     curves,
     improvement,
-    iqm,
     plural,
     spread,
-    steps_to,
 )
 from hybrid_rl.analysis.curves_picture import LABELS, plot
 from hybrid_rl.analysis.results import redrawn
@@ -49,7 +47,6 @@ EVALUATION = "eval/return"
 LEAST = 3  # evaluations of a curve that is shown
 FEW = 4  # seeds, of whose resamples more than 2.5% have the lowest one as their mean
 WIDTH = number(0, " of steps (or seconds), 0 or more")
-VALUE = number(what=" in the metric's unit")
 
 
 def figure(
@@ -58,31 +55,26 @@ def figure(
     x: Annotated[str, "step, wall_s, or a key that was swept"] = "step",
     group: Annotated[str, "key of the configuration, with a curve for each value"] = "algo",
     smooth: Annotated[float, "width of a moving mean, in units of x", WIDTH] = 0.0,
-    threshold: Annotated[float | None, "value of the metric to reach", VALUE] = None,
     others: Annotated[str, "a table as out=FILE.csv writes, to draw beside the runs"] = "",
 ) -> tuple["Figure", dict[str, Any]]:
     """The learning curves of `runs`, and their numbers."""
     if str(runs).endswith(".json") and not others:
-        picture, numbers = redrawn(runs, "runs", draw)
-    else:
-        drawn = []
-        for name in map(str.strip, metric.split(",")):
-            ours = curves(runs, name, x, group, smooth)
-            tasks = {curve.task for curve in ours}
-            drawn += ours + (tables.read(others, name, tasks, x, smooth) if others else [])
-        numbers = {
-            "metric": metric,
-            "x": x,
-            "group": group,
-            "line": "interquartile mean over seeds",
-            "band": "95% percentile bootstrap over seeds",
-            "curves": [to_numbers(curve) for curve in drawn],
-            "comparisons": comparisons(drawn),
-        }
-        picture = draw(numbers)
-    if threshold is not None:
-        numbers["threshold"] = threshold
-    return picture, numbers
+        return redrawn(runs, "runs", draw)
+    drawn = []
+    for name in map(str.strip, metric.split(",")):
+        ours = curves(runs, name, x, group, smooth)
+        tasks = {curve.task for curve in ours}
+        drawn += ours + (tables.read(others, name, tasks, x, smooth) if others else [])
+    numbers = {
+        "metric": metric,
+        "x": x,
+        "group": group,
+        "line": "interquartile mean over seeds",
+        "band": "95% percentile bootstrap over seeds",
+        "curves": [to_numbers(curve) for curve in drawn],
+        "comparisons": comparisons(drawn),
+    }
+    return draw(numbers), numbers
 
 
 def show(run_dir: Path) -> None:
@@ -108,8 +100,7 @@ def show(run_dir: Path) -> None:
 
 def summary(numbers: dict[str, Any]) -> list[str]:
     """A line per curve, up to the last point that all its seeds have; then comparisons by area."""
-    threshold, drawn = numbers.get("threshold"), from_numbers(numbers)
-    lines = []
+    drawn, lines = from_numbers(numbers), []
     for curve in drawn:
         if not curve.shared.any():
             lines.append(f"{curve.task}, {curve.label}: no point that all its seeds have")
@@ -118,16 +109,10 @@ def summary(numbers: dict[str, Any]) -> list[str]:
         ends = spread(curve.each[:, last])
         if last < len(curve.x) - 1:
             ends += f" at {curve.x[last]:,.10g}"
-        line = (
+        lines.append(
             f"{curve.task}, {curve.label}: {plural(len(curve.seeds), 'seed')}, "
             f"last {curve.metric} {ends}, mean over the run {spread(area(curve))}"
         )
-        if threshold is not None:
-            steps = steps_to(curve, threshold)
-            line += f", {threshold:,.10g} reached by {np.isfinite(steps).sum()} of {len(steps)}"
-            if np.isfinite(steps).all():
-                line += f" at {iqm(steps):,.0f}"
-        lines.append(line)
     for each in numbers["comparisons"] if "comparisons" in numbers else comparisons(drawn):
         rate, low, high = each["share"], *each["band"]
         until = each.get("until")  # older files lack it

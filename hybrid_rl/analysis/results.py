@@ -17,7 +17,6 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.files.reading import json_file, open_file, yaml_file
 from hybrid_rl.run.logs.records import COORDINATES, WORD, arrays, flatten_keys, row_of
 from hybrid_rl.settings.complete import nearest
-from hybrid_rl.settings.values import PAID, SECTIONS
 
 NOT_METRICS = (*COORDINATES, WORD)  # of a row; every other name is a metric
 # Keys in which runs of the same settings may differ: which learners they hold, how long they run,
@@ -27,7 +26,6 @@ NOT_SETTINGS = {
     *("eval_every", "eval_episodes", "eval_modes", "checkpoint_every", "checkpoint_replay"),
     *("compile_cache", "version", "logger", "physics"),
 }
-BUILT = (*SECTIONS, *PAID)  # groups from which a run is built; the others are their parts
 IMPLEMENTATION = ".physics"  # ending of the keys that choose one of the same equations
 UNSET, SET = "unset", "set"  # for a key that only some of the runs have, and for a group of keys
 MOST_KEYS, MOST_CHARACTERS = 3, 40  # of a label; beyond that it is a letter
@@ -40,28 +38,18 @@ class RunFolder:
     path: Path
 
     @cached_property
-    def _read(self) -> tuple[list[dict[str, Any]], bool]:
-        """The rows, and whether the last one is incomplete."""
-        file, rows, last = self.path / "metrics.jsonl", [], b""
-        with open_file(file) as data:
-            for number, last in enumerate(data, 1):
-                if not last.endswith(b"\n"):  # what follows the last line end is cut
-                    break
-                if (row := row_of(last)) is None:
-                    line = f"line {number} is no row of metrics (JSON with step, seed and wall_s)"
-                    raise UsageError(f"{file}: {line}")
-                rows.append(row)
-        return rows, not last.endswith(b"\n") and bool(last.strip())
-
-    @property
     def rows(self) -> list[dict[str, Any]]:
         """The complete rows of metrics.jsonl; a running process may be writing the last one."""
-        return self._read[0]
-
-    @property
-    def cut(self) -> bool:
-        """Whether the last row was left out, as it is incomplete."""
-        return self._read[1]
+        file, rows = self.path / "metrics.jsonl", []
+        with open_file(file) as data:
+            for number, line in enumerate(data, 1):
+                if not line.endswith(b"\n"):
+                    break
+                if (row := row_of(line)) is None:
+                    what = "is no row of metrics (JSON with step, seed and wall_s)"
+                    raise UsageError(f"{file}: line {number} {what}")
+                rows.append(row)
+        return rows
 
     @cached_property
     def settings(self) -> dict[str, Any]:
@@ -160,10 +148,9 @@ def redrawn(
 def differences(runs: Sequence[RunFolder], expected: Sequence[str] = ()) -> list[dict[str, str]]:
     """For each run the settings in which the runs differ: key -> value, as words.
 
-    Groups from which a run is built are compared, and single values at the root that all runs
-    have. A value that occurs several times, as in the parts to which these refer, counts once, by
-    its shortest key: the one that a user overrides. expected: keys that may differ, with all
-    settings that have the same values.
+    Groups are compared, and single values at the root that all runs have. A value that occurs
+    several times, as in the parts to which these refer, counts once, by its shortest key: the one
+    that a user overrides. expected: keys that may differ, with all settings of the same values.
     """
     settings = [run.settings for run in runs]
     names = {name for key in expected for each in settings for name in _matches(each, key)}
@@ -173,7 +160,8 @@ def differences(runs: Sequence[RunFolder], expected: Sequence[str] = ()) -> list
     compared = {
         (_last(key), column)
         for key, column in differ.items()
-        if _is_compared(key, settings)
+        if key not in NOT_SETTINGS
+        and not key.endswith(IMPLEMENTATION)
         and ("." in key or UNSET not in column)
         and not (_is_of_some(column) and any(parent in differ for parent in _parents(key)))
     }
@@ -236,14 +224,6 @@ def _column(settings: Sequence[Mapping[str, Any]], key: str) -> tuple[str, ...]:
         return SET if any(name.startswith(f"{key}.") for name in each) else UNSET
 
     return tuple(map(one, settings))
-
-
-def _is_compared(key: str, settings: Sequence[Mapping[str, Any]]) -> bool:
-    """Whether a key changes what a run learns: of a group, that the run was built from it."""
-    root, *more = key.split(".")
-    whole = any(name.startswith("controllers.") for each in settings for name in each)
-    built = not more or not whole or root in BUILT
-    return built and key not in NOT_SETTINGS and not key.endswith(IMPLEMENTATION)
 
 
 def _is_of_some(column: tuple[str, ...]) -> bool:

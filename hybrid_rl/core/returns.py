@@ -16,7 +16,10 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.protocols import Env
 from hybrid_rl.types import Imagined, Path, Reward
+
+FALLS = 3.0  # the survival bonus of a decision, where episodes end by a fall
 
 
 def to_go(rewards: Array, goes_on: Array, last: Array, unroll: bool = False) -> Array:
@@ -53,3 +56,13 @@ def reached(paths: Imagined) -> Array:
     """The probability [H, B] that a trajectory does not end before each decision."""
     before = jnp.concatenate([jnp.ones_like(paths.continues[:1]), paths.continues[:-1]])
     return jnp.cumprod(before, 0)
+
+
+def bonus(world: Env, given: float | None) -> float:
+    """The survival bonus of a decision: `given`, or by whether episodes of `world` can end.
+
+    Without it falling pays: it ends an episode of negative rewards.
+    """
+    if given is not None:
+        return given
+    return 0.0 if getattr(world, "ended", None) is None else FALLS

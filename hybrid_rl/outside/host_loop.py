@@ -25,8 +25,7 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.core.batching import where
-from hybrid_rl.envs.adapters.copies import Copies, Outcome
-from hybrid_rl.envs.adapters.external import External
+from hybrid_rl.envs.adapters.external import Copies, External, Outcome
 from hybrid_rl.outside.acting import NONE, Acting
 from hybrid_rl.outside.sending import mailbox, send
 from hybrid_rl.protocols import Controller

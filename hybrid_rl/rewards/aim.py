@@ -1,13 +1,13 @@
 """r = b - |q(x') - q*| - c |u|^2: hold a quantity of the environment at a target.
 
 q is a quantity of the environment, such as the speed of a robot, and q* its target, a number or one
-for each of its entries. b is that of core.alive.
+for each of its entries. b is that of core.returns.
 """
 
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core.alive import bonus
+from hybrid_rl.core.returns import bonus
 from hybrid_rl.fields import FieldError, NotNegative, part
 from hybrid_rl.protocols import Measured
 

@@ -1,13 +1,13 @@
 """r = b - |q - q*| - w |e| - c |u|^2: push an object to another position than the task's target.
 
 q is the object's position seen from the task's target, e that seen from the hand [m]; b is that of
-core.alive.
+core.returns.
 """
 
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core.alive import bonus
+from hybrid_rl.core.returns import bonus
 from hybrid_rl.fields import FieldError, NotNegative, part
 from hybrid_rl.protocols import Measured
 

@@ -1,7 +1,7 @@
 """r = b + d v - c |u|^2 - p [|pitch| > level]: run forward or back, level or thriftily.
 
 v is the speed [m/s] of the robot, d its direction. Planners see a sigmoid instead of the
-indicator, as some take gradients. b is that of core.alive.
+indicator, as some take gradients. b is that of core.returns.
 """
 
 from collections.abc import Callable
@@ -10,7 +10,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core.alive import bonus
+from hybrid_rl.core.returns import bonus
 from hybrid_rl.fields import FieldError, NotNegative, Positive, part
 from hybrid_rl.protocols import Measured
 

@@ -29,19 +29,6 @@ def test_many_differences_become_letters_with_a_note(tmp_path):
     assert one.notes == ("hopper, sac A: u=0, v=0, w=0, x=0, y=0",)
 
 
-def test_only_parts_that_are_built_are_compared(tmp_path):
-    """A value that reaches several sections counts once, by the name a user would type."""
-    for seed, norm in enumerate(["true", "false"]):
-        part = f"{{_target_: a.Critic, layer_norm: {norm}}}"
-        more = {"critic": part, "planner": f"{{horizon: {seed}}}"}
-        built = {"controllers": f"{{full: {{critic: {part}}}}}", "learners": f"{{policy: {part}}}"}
-        run(tmp_path / str(seed), [1.0], seed, **more, **built)
-    assert [curve.label for curve in curves(tmp_path)] == [
-        "sac layer_norm=false",
-        "sac layer_norm=true",
-    ]
-
-
 def test_groups_are_tasks_and_algorithms_or_any_key(tmp_path):
     run(tmp_path / "a", [1.0], algo="sac", num_envs=4, replay="{capacity: 5}")
     run(tmp_path / "b", [2.0], algo="nn_mppi", num_envs=4, replay="{capacity: 6}")

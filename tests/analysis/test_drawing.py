@@ -149,6 +149,7 @@ def test_the_driver_says_whether_the_processor_draws(choosing, monkeypatch, rend
     assert offscreen.by_processor() == expected
 
 
+@pytest.mark.turns(2)
 @pytest.mark.parametrize("name", offscreen.BACKENDS)
 def test_each_backend_draws_or_is_not_chosen(name):
     """In a process of its own, after mujoco was imported for no display at all."""
@@ -171,24 +172,3 @@ def test_each_backend_draws_or_is_not_chosen(name):
         assert done.stderr.startswith(f"cannot draw without a display: {name} failed; install")
     else:
         assert done.stderr == ""
-
-
-def test_renderers_of_mujoco_and_gymnasium_draw_after_a_command_disabled_them(can_draw):
-    code = (
-        "import gymnasium, mujoco\n"
-        "from hybrid_rl.envs.mujoco import offscreen\n"
-        "offscreen.lend()\n"
-        "env = gymnasium.make('Hopper-v5', render_mode='rgb_array', width=64, height=48)\n"
-        "env.reset(seed=0)\n"
-        "assert env.render().std() > 10\n"
-        "env.close()\n"
-        "model = mujoco.MjModel.from_xml_string('<mujoco/>')\n"
-        "with mujoco.Renderer(model, 48, 64) as own:\n"
-        "    assert own.render().shape == (48, 64, 3)\n"
-    )
-    env = {key: value for key, value in os.environ.items() if key != "PYOPENGL_PLATFORM"}
-    run = [sys.executable, "-W", "ignore", "-c", code]
-    run_env = env | {"MUJOCO_GL": "disable"}
-    done = subprocess.run(run, env=run_env, capture_output=True, text=True)
-    failed = "cannot draw without a display"
-    assert done.returncode == 0 if can_draw else failed in done.stderr, done.stderr

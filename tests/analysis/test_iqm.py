@@ -5,6 +5,7 @@ import pytest
 from scipy.stats import trim_mean
 
 from hybrid_rl.analysis.curves import band, iqm
+from hybrid_rl.analysis.learning_curves import FEW
 
 
 @pytest.mark.parametrize("n", [4, 8, 20])
@@ -25,6 +26,12 @@ def test_iqm_is_the_trimmed_mean_where_quarters_are_whole(n):
 )
 def test_iqm_of_few_seeds_weighs_the_border(values, expected):
     assert iqm(np.array(values, float)) == pytest.approx(expected, rel=1e-12)
+
+
+def test_the_band_of_few_seeds_is_their_range():
+    for seeds in range(2, FEW + 1):
+        np.testing.assert_allclose(band(np.arange(seeds * 1.0)), [0, seeds - 1])
+    assert band(np.arange(FEW + 1.0))[0] > 0
 
 
 def test_the_band_covers_the_truth_as_often_as_it_says():

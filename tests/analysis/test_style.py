@@ -21,17 +21,13 @@ from hybrid_rl.analysis.style import (
 from hybrid_rl.figures import study_of
 
 RESULTS = Path(__file__).parents[2] / "docs" / "results"
-REDRAWN = {  # study -> some of the JSON files from which it draws
-    "active_learning": ("fig_4_1",),
-    "contact_maps": ("fig_5_4_filters", "absence"),
-    "ergodic_coverage": ("kle3_cost",),
-    "held_out": ("exploration_model",),
-    "imitation": ("fig_4_2_lander", "fig_6_9", "fig_6_10"),
-    "koopman": ("fig_7_2", "fig_7_3", "fig_7_4", "fig_7_7"),
-    "koopman_settings": ("koopman_settings",),
-    "learning_curves": ("hybrid_fast", "walker_faster"),
-    "model_learning": ("fig_6_6",),
-}
+REDRAWN = [  # a study, and a JSON file from which it draws
+    ("contact_maps", "fig_5_4_filters"),
+    ("held_out", "exploration_model"),
+    ("imitation", "fig_6_9"),
+    ("koopman", "fig_7_3"),
+    ("learning_curves", "walker_faster"),
+]
 
 
 def label_sets():
@@ -86,9 +82,7 @@ def test_a_method_has_one_colour_in_every_picture():
             "koopman_active, deviation 0.316, prior 1e-6",
         ),
         ("z15_gain_frozen", "z 15, information gain, K frozen"),
-        ("A_step_printed", "A-optimal by step, as printed"),
         ("bc, experiment=robots/ant", "bc, experiment robots/ant"),
-        ("D_weight_0.3", "D-optimal, weight 0.3"),
         ("num_demonstrations=5", "num demonstrations 5"),
         ("my_method", "my_method"),
         ("sac", "sac"),
@@ -98,9 +92,7 @@ def test_labels_are_words(label, shown):
     assert words(label) == shown
 
 
-@pytest.mark.parametrize(
-    ("study", "name"), [(study, name) for study, names in REDRAWN.items() for name in names]
-)
+@pytest.mark.parametrize(("study", "name"), REDRAWN)
 def test_a_picture_is_drawn_again_from_its_json(study, name):
     """In it no two named lines have the same style, and no text is smaller than 7 pixels at 700."""
     with matplotlib.rc_context(STYLE):

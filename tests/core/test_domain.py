@@ -35,18 +35,6 @@ def test_points_of_a_lattice_are_uniform_each_and_even_together() -> None:
     assert 2 <= counts.min() <= counts.max() <= 6  # of 4 each; independent points miss cells
 
 
-@pytest.mark.parametrize(
-    ("fields", "words"),
-    [
-        ({"low": (-1.0, -1.0)}, "must have one length"),
-        ({"low": (1.0,)}, r"low=\[1.0\]: must lie below high=\[1.0\]"),
-    ],
-)
-def test_bad_boxes_are_refused(fields, words) -> None:
-    with pytest.raises(ValueError, match=words):
-        Box(**{"coordinates": (0,), "low": (0.0,), "high": (1.0,)} | fields)
-
-
 def test_distance_outside_is_squared_and_averaged() -> None:
     """0 inside, (1, 2) and (-2, 0) beyond sides of lengths 2 and 4."""
     s = jnp.array([[0.5, 1.0], [2.0, 6.0], [-3.0, 0.0]])

@@ -62,25 +62,6 @@ def test_information_of_a_linear_model_is_that_of_its_regression() -> None:
     np.testing.assert_allclose(flat.T @ flat, np.kron(z.T @ z, np.diag(SIGMA**-2)), atol=1e-12)
 
 
-def test_information_of_one_decision_of_a_linear_model_is_the_gain_of_its_regression() -> None:
-    """n log(1 + s' S s / sigma^2), the objective of chapter 7, for a diagonal S."""
-    s, S = RNG.normal(size=3), RNG.uniform(0.5, 2.0, 3)
-    F = jnp.asarray(np.kron(np.eye(N), s)[None])
-    value = fisher.log_det(F, jnp.full(N, 0.3), jnp.asarray(np.tile(1 / S, N)))
-    np.testing.assert_allclose(value, N * np.log(1 + (S * s**2).sum() / 0.09), rtol=1e-12)
-
-
-def test_information_of_a_decay_by_path_has_a_closed_form() -> None:
-    """x' = a x: I = sum_t (t a^(t-1) x_0)^2 / sigma^2."""
-    a, x0, sigma = 0.9, 1.5, 0.2
-    path = Path(jnp.asarray(x0 * a ** np.arange(T + 1))[:, None], jnp.zeros((T, 1)))
-    F = along(lambda a, x, u: a * x, jnp.asarray([a]), path, "path")
-    t = np.arange(1, T + 1)
-    expected = ((t * a ** (t - 1) * x0) ** 2).sum() / sigma**2
-    total = fisher.diagonal(F, jnp.array([sigma])).sum()
-    np.testing.assert_allclose(total, expected, rtol=1e-12)
-
-
 def test_sensitivities_by_path_are_derivatives_of_the_rolled_out_states() -> None:
     """By forward mode through the whole path, with open-loop actions."""
     step, theta = network()
@@ -106,35 +87,6 @@ def test_products_are_those_of_the_derivatives(kind) -> None:
     products = jax.jit(fisher.products, static_argnums=(0, 3))
     product = products(step, theta, path, kind, unravel(v))
     np.testing.assert_allclose(product, F @ v, atol=1e-12)
-
-
-@pytest.mark.parametrize("kind", fisher.KINDS)
-def test_costate_gradient_is_reverse_mode_through_the_path(kind) -> None:
-    """For each criterion, with a policy that depends on the state."""
-    step, theta = network()
-    prior = jnp.asarray(RNG.uniform(0.5, 2.0, ravel_pytree(theta)[0].size))
-
-    def objective(name: str, path: Path) -> Array:
-        F = along(step, theta, path, kind)
-        return fisher.criterion(name, F, jnp.asarray(SIGMA), prior)
-
-    def by_costate(name: str, v: Array) -> Array:
-        nominal = rolled(step, theta, v)
-        return adjoint.adjoint(
-            lambda x, u: step(theta, x, u), policy, lambda path: objective(name, path), nominal
-        ).gradient
-
-    @jax.jit
-    def both(v: Array) -> tuple:
-        reverse = [
-            jax.grad(lambda v, n=n: objective(n, rolled(step, theta, v)))(v)
-            for n in fisher.CRITERIA
-        ]
-        return [by_costate(n, v) for n in fisher.CRITERIA], reverse
-
-    for name, gradient, expected in zip(fisher.CRITERIA, *both(jnp.asarray(V)), strict=True):
-        assert np.abs(expected).max() > 1e-3, name
-        np.testing.assert_allclose(gradient, expected, rtol=1e-10, atol=1e-12, err_msg=name)
 
 
 @pytest.mark.parametrize("name", fisher.CRITERIA)

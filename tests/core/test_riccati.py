@@ -7,15 +7,12 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from jax import Array
 
 from hybrid_rl.core import analytic, riccati
 from hybrid_rl.envs.analytic.cart_double_pendulum import CartDoublePendulum
 from hybrid_rl.envs.analytic.no_dynamics import NoDynamics
 from hybrid_rl.envs.analytic.point_mass import PointMass
-from hybrid_rl.envs.analytic.state import Euclidean, fully_observed
 from hybrid_rl.policies.regulator import Regulator
-from hybrid_rl.types import EnvState, Spec
 
 WEIGHTS = (5.0, 50.0, 50.0, 20.0, 700.0, 700.0)
 
@@ -112,39 +109,3 @@ def test_a_mode_out_of_reach_has_a_finite_cost() -> None:
         riccati.regulator(A, B, np.eye(2), np.eye(1))
     P = riccati.finite_horizon(*map(jnp.asarray, (A, B, np.eye(2), np.eye(1))), 16)
     assert P[1, 1] == pytest.approx(sum(1.1 ** (2 * t) for t in range(16)), rel=1e-5)
-
-
-class Faulty(Euclidean):
-    """x' = (x + u, 1.1 x_2, ...) with a fault; at rest at the origin without it."""
-
-    spec = Spec(obs=2, act=1, dt=0.1)
-
-    def __init__(self, fault: str) -> None:
-        self.fault = fault
-
-    def dynamics(self, x: Array, u: Array) -> Array:
-        moved = {"out of reach": 1.1 * x[1], "moves": u[0] + 0.5, "kink": jnp.sqrt(x[1]) + u[0]}
-        return jnp.stack([x[0] + u[0], moved[self.fault]])
-
-    def reward_of(self, x: Array, u: Array, after: Array) -> Array:
-        return jnp.zeros(())
-
-    def reset(self, key: Array) -> EnvState:
-        return fully_observed(jnp.zeros(2), jnp.zeros(()))
-
-    def equilibrium(self) -> tuple[Array, Array]:
-        return jnp.zeros(2), jnp.zeros(1)
-
-
-@pytest.mark.parametrize(
-    ("fault", "words"),
-    [
-        ("out of reach", "env: Faulty: no action stabilises what is unstable at its equilibrium"),
-        ("moves", r"env: Faulty.equilibrium\(\): must be a state and .* at rest.* moves by 0.5"),
-        ("kink", r"env: Faulty.equilibrium\(\): .* where dynamics have derivatives"),
-    ],
-)
-def test_a_world_that_cannot_be_regulated_is_named(fault: str, words: str) -> None:
-    world: Any = Faulty(fault)
-    with pytest.raises(ValueError, match=words):
-        Regulator(world).solve()

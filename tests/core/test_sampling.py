@@ -79,19 +79,6 @@ def test_the_weighted_mean_converges_to_the_path_integral() -> None:
     assert float((squared * v).sum()) == pytest.approx(0.6 / 0.5 / 2, abs=0.02)
 
 
-def test_effective_samples_range_from_one_to_the_number_of_samples() -> None:
-    """K for equal weights, 1 if only one is not zero."""
-    for weights, number in ((jnp.full((K, 1), 1 / K), K), (jnp.eye(K)[:, :1], 1)):
-        assert sampling.effective_samples(weights)[0] == pytest.approx(number)
-
-
-def test_shift_drops_the_first_action() -> None:
-    """The second action is first, `rest` is last."""
-    plan = jnp.arange(6.0).reshape(3, 2)
-    np.testing.assert_array_equal(sampling.shift(plan), [[2, 3], [4, 5], [0, 0]])
-    np.testing.assert_array_equal(sampling.shift(plan, 7.0), [[2, 3], [4, 5], [7, 7]])
-
-
 def test_a_candidate_without_a_finite_return_has_no_weight() -> None:
     """The best action that is allowed lies at 0.3; where none is, the plan is NaN."""
     x, before, key = jnp.zeros(1), jnp.zeros((1, 1)), jax.random.key(0)

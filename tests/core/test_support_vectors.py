@@ -20,9 +20,7 @@ CASES = {  # name -> number of points, share of flipped labels, C
     "clean, C 10": (200, 0.0, 10.0),
     "flipped, C 1": (200, 0.05, 1.0),
     "flipped, C 10": (200, 0.05, 10.0),
-    "weights, C 10": (200, 0.05, 10.0),
 }
-over_cases = pytest.mark.parametrize("name", CASES)
 
 
 def labelled(count: int, flipped: float) -> tuple[np.ndarray, np.ndarray]:
@@ -34,21 +32,16 @@ def labelled(count: int, flipped: float) -> tuple[np.ndarray, np.ndarray]:
     return s, np.where((disc | box) ^ (rng.random(count) < flipped), 1.0, -1.0)
 
 
-def weights(count: int) -> np.ndarray:
-    """How often each point is measured: every third one twice."""
-    return 1.0 + (np.arange(count) % 3 == 0)
-
-
 def queries() -> np.ndarray:
     """Points [100, 2] at which f is compared."""
     return np.random.default_rng(1).uniform(0, 1, (100, 2)).astype(np.float32)
 
 
-def learn(s, label, cost, capacity=256, apart=0.0, iterations=60):
+def learn(s, label, cost, capacity=256, iterations=60):
     """The machine after all points, each followed by `iterations`."""
 
     def one(machine, point):
-        machine = svm.add(machine, *point, LENGTH, apart)
+        machine = svm.add(machine, *point, LENGTH, 0.0)
         return svm.optimise(machine, iterations, LENGTH, cost), None
 
     first = svm.begin(capacity, 2)
@@ -61,18 +54,10 @@ def decisions(machine, cost):
     return jax.vmap(lambda s: svm.decision(machine, s, LENGTH, cost))(jnp.asarray(queries()))
 
 
-@over_cases
+@pytest.mark.parametrize("name", CASES)
 def test_f_is_that_of_libsvm(name) -> None:
-    """Clean or not, and with points that are measured twice."""
     count, flipped, cost = CASES[name]
-    s, label = labelled(count, flipped)
-    if name.startswith("weights"):
-        twice = weights(count) == 2
-        s, label = np.concatenate([s, s[twice]]), np.append(label, label[twice])
-        machine = learn(s, label, cost, apart=1e-5)
-        assert int(machine.count) == count
-    else:
-        machine = learn(s, label, cost)
+    machine = learn(*labelled(count, flipped), cost)
     want = np.array(json.loads(FILE.read_text())[name])
     np.testing.assert_allclose(decisions(machine, cost), want, atol=2e-3)
     assert want.max() > 0.5
@@ -120,8 +105,7 @@ def write() -> None:
     values = {}
     for name, (count, flipped, cost) in CASES.items():
         s, label = labelled(count, flipped)
-        each = weights(count) if name.startswith("weights") else None
-        machine = SVC(C=cost, gamma=0.5 / LENGTH**2, tol=1e-7).fit(s, label, each)
+        machine = SVC(C=cost, gamma=0.5 / LENGTH**2, tol=1e-7).fit(s, label)
         values[name] = np.round(machine.decision_function(queries()), 5).tolist()
     FILE.write_text(json.dumps(values) + "\n")
 

@@ -95,15 +95,10 @@ def test_decisions_are_those_of_gymnasium(theirs):
 
 
 @pytest.mark.parametrize(("height", "falling", "ends"), [(0.75, 0.0, False), (0.7, -12.0, True)])
-def test_ant_terminates_below_the_height_limit(height, falling, ends):
+def test_ant_terminates_below_the_height_limit_of_pybullet(height, falling, ends):
     ant = Ant("native")
     state = jitted(ant, "reset")(jax.random.key(0))
     qpos, qvel = state.data.qpos.at[2].set(height), state.data.qvel.at[2].set(falling)
-    data = state.data.replace(qpos=qpos, qvel=qvel)
-    after = jitted(ant, "step")(state.replace(data=data), jnp.zeros(8))
+    after = state.replace(data=state.data.replace(qpos=qpos, qvel=qvel))
+    after = jitted(ant, "step")(after, jnp.zeros(8))
     assert bool(after.terminated) == ends == bool(ant.ended(after.obs))
-    angle, limits = after.data.qpos[7:], ant._body.model.jnt_range[1:]
-    middle, half = limits.mean(1), (limits[:, 1] - limits[:, 0]) / 2
-    at_limit = (np.abs((angle - middle) / half) > 0.99).sum()
-    expected = (-1.0 if ends else 1.0) + after.metrics["speed"] - 0.1 * at_limit
-    np.testing.assert_allclose(after.reward, expected, atol=1e-4)

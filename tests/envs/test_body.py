@@ -86,7 +86,7 @@ def test_mjx_moves_as_mujoco_c(task):
         np.testing.assert_allclose(after.obs, then.obs, atol=1e-3)  # measured: at most 2e-4
 
 
-RIGS = """
+RIG = """
 <mujoco>
   <option timestep="0.002"><flag autoreset="disable"/></option>
   <worldbody>
@@ -116,14 +116,6 @@ RIGS = """
 """
 
 
-@pytest.fixture(scope="module")
-def rig(tmp_path_factory):
-    """A file with two sliders, of which one carries a driven pole."""
-    file = tmp_path_factory.mktemp("rig") / "rig.xml"
-    file.write_text(RIGS)
-    return str(file)
-
-
 @cache
 def pushed(physics):
     """The function fields, height -> states before and after 40 physics steps of sliding."""
@@ -137,9 +129,9 @@ def pushed(physics):
     return jax.jit(after)
 
 
-def of_mujoco(asset, name, factor, height):
+def of_mujoco(name, factor, height):
     """The velocities [nv] that `pushed` should reach, by MuJoCo's own loop; a field by a factor."""
-    model = mujoco.MjModel.from_xml_path(asset)
+    model = mujoco.MjModel.from_xml_string(RIG)
     attrgetter(name)(model)[:] *= factor
     mujoco.mj_setConst(model, mujoco.MjData(model))
     data = mujoco.MjData(model)
@@ -148,31 +140,32 @@ def of_mujoco(asset, name, factor, height):
     return data.qvel
 
 
+@pytest.mark.turns(2)
 @pytest.mark.parametrize("implementation", ["native", "mjx"])
-def test_each_field_that_an_episode_has_for_itself_acts_as_in_mujoco(rig, implementation):
+def test_each_field_that_an_episode_has_for_itself_acts_as_in_mujoco(implementation):
     """And sensors are those of the state.
 
     MJX: a mass in the air, since on the floor its contacts are those of the model's masses.
     """
-    physics = Physics(rig, implementation)
+    physics = Physics(RIG, implementation)
     after = pushed(physics)
     own = {n: jnp.asarray(attrgetter(n)(physics.model), jnp.float32) for n in mjcf.FIELDS}
     for state in after(own, 0.0):
-        sensed = placed(rig, state.qpos, state.qvel)[1].sensordata
+        sensed = placed(RIG, state.qpos, state.qvel)[1].sensordata
         np.testing.assert_allclose(state.sensors, sensed, atol=1e-5)
         np.testing.assert_array_equal(physics.sensor(state, "tip"), state.sensors[1:4])
     for name in mjcf.FIELDS:
         height = 1.0 if (implementation, name) == ("mjx", "body_mass") else 0.0
         factor = 0.5 if name == "opt.gravity" else 1.5
-        plain, expected = (of_mujoco(rig, name, each, height) for each in (1.0, factor))
+        plain, expected = (of_mujoco(name, each, height) for each in (1.0, factor))
         assert np.abs(expected - plain).max() > 0.01, name
         found = after({**own, name: factor * own[name]}, height)[1].qvel
         np.testing.assert_allclose(found, expected, atol=2e-4, err_msg=name)  # measured: 6e-5
 
 
-def test_environments_side_by_side_keep_their_own_bodies(rig):
+def test_environments_side_by_side_keep_their_own_bodies():
     """Also where the order changes from one call to the next."""
-    physics = Physics(rig, "native")
+    physics = Physics(RIG, "native")
     masses = np.array([1.0, 2.0, 3.0], np.float32)[:, None] * physics.model.body_mass
     together = jax.jit(jax.vmap(lambda mass: pushed(physics)({"body_mass": mass}, 0.0)[1].qvel))
     masses = masses.astype(np.float32)

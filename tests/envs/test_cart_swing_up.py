@@ -1,6 +1,5 @@
 """The cart that swings a rod up, against mechanics and a NumPy roll-out."""
 
-import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -30,11 +29,8 @@ def test_reward_is_that_of_the_thesis() -> None:
     assert float(reward) == pytest.approx(0.5 - 0.1 * 1.2**8 - 0.36, abs=1e-5)
 
 
-def test_the_rod_hangs_at_the_start_and_success_is_upright() -> None:
-    env = CartSwingUp(start=0.1)
-    obs = jax.vmap(env.reset)(jax.random.split(jax.random.key(0), 2000)).obs
-    np.testing.assert_allclose(obs.mean(0), [np.pi, 0, 0, 0], atol=0.01)
-    np.testing.assert_allclose(obs.std(0), 0.1, rtol=0.1)
+def test_success_is_upright() -> None:
+    env = CartSwingUp()
     for angle, success in ((2 * np.pi - 0.4, 1), (0.5, 0), (np.pi, 0)):
         state = fully_observed(jnp.array([angle, 0.0, 0.0, 0.0]), jnp.zeros(()))
         after = jitted(env, "step")(state, jnp.zeros(1))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from worlds import along, jitted, many, shown
 
-from hybrid_rl.envs.analytic.contact_plane import ContactPlane, rounded_box
+from hybrid_rl.envs.analytic.contact_plane import ContactPlane
 from hybrid_rl.envs.analytic.point_mass import PointMass
 
 WORLD = ContactPlane()
@@ -19,39 +19,6 @@ def at(env, x, pose=None):
     pose = state.data.pose if pose is None else jnp.asarray(pose, jnp.float32)
     x = jnp.asarray(x, jnp.float32)
     return state.replace(data=state.data._replace(x=x, pose=pose), obs=x)
-
-
-@pytest.mark.parametrize(
-    ("s", "distance"),
-    [((3.0, 0.0), 1.0), ((0.0, -3.0), 2.0), ((2.0 + 0.3, 1.0 + 0.4), 0.5), ((0.0, 0.0), -1.0)],
-)
-def test_distance_to_a_box(s, distance) -> None:
-    """4 x 2 m, with a rounding so small that its corners are sharp."""
-    got = rounded_box(jnp.array(s), 0.0, 0.0, 0.0, 2.0, 1.0, 1e-4)
-    assert float(got) == pytest.approx(distance, abs=2e-4)
-    turned = jnp.array([5.0 - s[1], 7.0 + s[0]])
-    got = rounded_box(turned, 5.0, 7.0, np.pi / 2, 2.0, 1.0, 1e-4)
-    assert float(got) == pytest.approx(distance, abs=2e-4)
-
-
-def test_a_box_of_equal_halves_and_rounding_is_a_disc() -> None:
-    s = np.random.default_rng(0).uniform(-1, 1, (50, 2))
-    got = jax.vmap(lambda s: rounded_box(s, 0.2, -0.1, 0.7, 0.3, 0.3, 0.3))(jnp.asarray(s))
-    np.testing.assert_allclose(got, np.hypot(s[:, 0] - 0.2, s[:, 1] + 0.1) - 0.3, atol=1e-5)
-
-
-def test_the_pose_moves_all_objects_about_the_middle() -> None:
-    """The point at the pose is the middle of the box in the reference arrangement."""
-    pose = np.array([0.6, 0.4, 0.8])
-    rng = np.random.default_rng(0)
-    for s in rng.uniform(0, 1, (5, 2)):
-        c, d = np.cos(0.8), np.sin(0.8)
-        moved = np.array([[c, -d], [d, c]]) @ (s - 0.5) + pose[:2]
-        want = jitted(WORLD, "distance")(jnp.asarray(s, jnp.float32))
-        got = jitted(WORLD, "distance")(
-            jnp.asarray(moved, jnp.float32), jnp.asarray(pose, jnp.float32)
-        )
-        assert float(got) == pytest.approx(float(want), abs=1e-6)
 
 
 @pytest.mark.parametrize("drag", [0.0, 0.5])

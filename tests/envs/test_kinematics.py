@@ -1,4 +1,4 @@
-"""Arms against their makers' tables, and their kinematics against MuJoCo C."""
+"""Kinematics of arms against MuJoCo C and their makers' tables."""
 
 from math import pi
 
@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from worlds import placed
 
-from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.kinematics import (
     Chain,
     damped_inverse,
@@ -17,7 +16,6 @@ from hybrid_rl.envs.mujoco.kinematics import (
     quat_multiply,
     rotate,
     rotate_towards,
-    stay_within,
 )
 from hybrid_rl.envs.panda_stack import READY
 from hybrid_rl.envs.sawyer_push import HOME
@@ -33,48 +31,6 @@ POSES = [  # asset, site, joints [rad], position of the site [m]; from the maker
     (PANDA, "tool", (0, 0.3, 0, -pi / 2, 0, 2, -0.7853), (0.6778, 0, 0.3785)),
     (PANDA, "tool", (0, pi / 16, 0, -5 * pi / 6, 0, pi - 0.2, pi / 4), (0.4581, 0, 0.0922)),
 ]
-MASSES = {  # [kg]: names, then masses
-    SAWYER: (
-        "base l0 l1 l2 l3 l4 l5 l6 rod cube",
-        (2.0687, 5.3213, 4.505, 1.745, 2.5097, 1.1136, 1.5625, 0.3292, 0.05, 0.1),
-    ),
-    PANDA: (
-        "link0 link1 link2 link3 link4 link5 link6 link7 hand left_finger right_finger block base",
-        (
-            *(0.629769, 4.970684, 0.646926, 3.228604, 3.587895, 1.225946, 1.666555, 0.735522),
-            *(0.73, 0.015, 0.015, 0.1, 0.1),
-        ),
-    ),
-}
-LIMITS = {  # lower, upper [rad]; velocity [rad/s]; torque [N m]
-    SAWYER: [
-        (-3.0503, 3.0503, 1.74, 80),
-        (-3.8095, 2.2736, 1.328, 80),
-        (-3.0426, 3.0426, 1.957, 40),
-        (-3.0439, 3.0439, 1.957, 40),
-        (-2.9761, 2.9761, 3.485, 9),
-        (-2.9761, 2.9761, 3.485, 9),
-        (-4.7124, 4.7124, 4.545, 9),
-    ],
-    PANDA: [
-        (-2.8973, 2.8973, 2.175, 87),
-        (-1.7628, 1.7628, 2.175, 87),
-        (-2.8973, 2.8973, 2.175, 87),
-        (-3.0718, -0.0698, 2.175, 87),
-        (-2.8973, 2.8973, 2.61, 12),
-        (-0.0175, 3.7525, 2.61, 12),
-        (-2.8973, 2.8973, 2.61, 12),
-    ],
-}
-PRINCIPAL = {  # moments of inertia [kg m^2], descending
-    "l0": (0.06516, 0.05109, 0.01862),
-    "l1": (0.02243, 0.02216, 0.00971),
-    "l2": (0.02579, 0.02551, 0.00293),
-    "l3": (0.01024, 0.00970, 0.00370),
-    "l4": (0.01365, 0.01355, 0.00127),
-    "l5": (0.00474, 0.00423, 0.00191),
-    "l6": (0.00036, 0.00031, 0.00021),
-}
 
 
 def _pose(asset, site, qpos):
@@ -117,26 +73,6 @@ def test_poses_are_those_of_the_makers_and_of_mujoco(asset, site, joints, expect
         np.testing.assert_allclose(jacobian, jac.reshape(6, -1)[:, :7], atol=2e-6)
 
 
-@pytest.mark.parametrize("asset", MASSES)
-def test_masses_and_moments_of_inertia(asset):
-    model, (names, masses) = mjcf.load(asset), MASSES[asset]
-    found = {model.body(i).name: model.body(i).mass[0] for i in range(1, model.nbody)}
-    assert found == pytest.approx(dict(zip(names.split(), masses, strict=True)))
-    for name, moments in PRINCIPAL.items() if asset == SAWYER else ():
-        inertia = sorted(model.body(name).inertia, reverse=True)
-        np.testing.assert_allclose(inertia, moments, atol=6e-6, err_msg=name)
-
-
-@pytest.mark.parametrize("asset", LIMITS)
-def test_limits(asset):
-    model, (low, high, speed, torque) = mjcf.load(asset), np.transpose(LIMITS[asset])
-    np.testing.assert_allclose(model.jnt_range[:7], np.stack((low, high), 1))
-    np.testing.assert_allclose(model.actuator_ctrlrange[:7], np.stack((-speed, speed), 1))
-    np.testing.assert_allclose(model.actuator_forcerange[:7], np.stack((-torque, torque), 1))
-    assert model.jnt_limited[:7].all()
-    assert model.actuator_forcelimited[:7].all()
-
-
 @pytest.mark.parametrize(("asset", "site", "joints"), [POSES[1][:3], POSES[4][:3]])
 def test_damped_least_squares(asset, site, joints):
     jacobian = _pose(asset, site, placed(asset, joints)[1].qpos)[2]
@@ -167,9 +103,3 @@ def test_rotations():
     small = jnp.array([1.0, 0.005, -0.01, 0.002])  # 0.01, -0.02, 0.004 rad
     target = quat_multiply(small / jnp.linalg.norm(small), r)
     np.testing.assert_allclose(rotate_towards(r, -target, 5.0), [0.05, -0.1, 0.02], atol=1e-4)
-
-
-def test_stay_within_stops_only_outward_motion():
-    low, high = jnp.zeros(4), jnp.ones(4)
-    velocity, position = jnp.array([1.0, -1.0, 1.0, -1.0]), jnp.array([1.5, 1.5, -0.5, -0.5])
-    np.testing.assert_array_equal(stay_within(velocity, position, low, high), [0.0, -1.0, 1.0, 0.0])

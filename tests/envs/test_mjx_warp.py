@@ -4,7 +4,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from worlds import BROKEN, LIFTED, OTHER, TOUCHING, make, reference, rollout
+from worlds import BROKEN, LIFTED, OTHER, TOUCHING, apart, make, rollout
 
 from hybrid_rl.envs.mujoco.physics import Physics
 
@@ -23,8 +23,7 @@ def env():
 
 @pytest.mark.parametrize("lane", [LIFTED, TOUCHING], ids=["in the air", "in contact"])
 def test_agrees_with_mujoco(env, lane):
-    obs = np.asarray(rollout(env).obs[lane])
-    assert np.abs(obs - reference("hopper", "warp", lane)).max() < 1e-4  # measured: 4e-6
+    assert apart(env, lane) < 1e-4  # measured: 4e-6
 
 
 def test_reads_what_mujoco_c_computes(env):
@@ -43,25 +42,12 @@ def test_nan_stays_in_its_lane(env):
     np.testing.assert_array_equal(obs[TOUCHING], obs[OTHER])
 
 
-@pytest.fixture(scope="module")
-def mjx_warp():
-    """The module: to import it takes 2 s, in every process that collects tests."""
-    from hybrid_rl.envs.mujoco import mjx_warp
+def test_an_overflow_gives_nan(env, monkeypatch):
+    """With lists of two constraint rows; MuJoCo Warp itself would drop contacts and continue."""
+    from hybrid_rl.envs.mujoco import mjx_warp  # which takes 2 s to import
 
-    return mjx_warp
-
-
-@pytest.fixture
-def small_lists(mjx_warp, monkeypatch):
-    """Lists of two constraint rows."""
     monkeypatch.setattr(mjx_warp, "capacities", lambda asset: (11, 2))
     mjx_warp.template.cache_clear()
-    yield
-    mjx_warp.template.cache_clear()
-
-
-def test_an_overflow_gives_nan(env, mjx_warp, small_lists):
-    """MuJoCo Warp itself would drop contacts and continue."""
     state = env.reset(jax.random.key(0))
     fields = {
         "qpos": state.data.qpos.at[1].add(-0.05),  # into the floor
@@ -70,17 +56,4 @@ def test_an_overflow_gives_nan(env, mjx_warp, small_lists):
         "ctrl": state.data.ctrl,
     }
     assert jnp.isnan(mjx_warp.step("hopper.xml", "warp", 1, fields)["qpos"]).all()
-
-
-@pytest.mark.parametrize(
-    ("asset", "contacts", "rows"),
-    [
-        ("cartpole.xml", 0, 1),  # the ends of the rail
-        ("hopper.xml", 11, 38),
-        ("walker2d.xml", 14, 62),  # 7 capsules on a floor, 6 joint limits
-        ("halfcheetah.xml", 16, 70),  # 8 capsules on a floor, 6 joint limits
-        ("humanoid.xml", 138, 242),  # 12 capsules, 5 spheres on a floor, 109 pairs, 17 limits
-    ],
-)
-def test_capacities(mjx_warp, asset, contacts, rows):
-    assert mjx_warp.capacities(asset) == (contacts, rows)
+    mjx_warp.template.cache_clear()

@@ -1,49 +1,16 @@
-"""The quadcopter against the thesis' equations, integrated independently."""
+"""The quadcopter against that on SE(3), whose equations are the thesis'."""
 
 import jax
 import jax.numpy as jnp
 import mujoco
 import numpy as np
 import pytest
-from worlds import along, jitted, placed
+from worlds import along, follow, jitted, placed
 
+from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
 from hybrid_rl.envs.quadcopter import Quadcopter
 
-MASS, INERTIA, ARM, THRUST, MOMENT, GRAVITY = (
-    0.6,
-    np.array([0.04, 0.0375, 0.0675]),
-    0.2,
-    0.6,
-    0.15,
-    9.81,
-)
-DRAG = np.array([0.4, 0.4, 2.0]), np.array([2.0, 2.0, 0.4])  # [1/s] of v, w
-
-
-def _rates(x, u, damping):
-    """Thesis, Appendix D: time derivatives of R [9], p, w, v (w, v in the body frame)."""
-    R, w, v = x[:9].reshape(3, 3), x[12:15], x[15:]
-    moment = THRUST * ARM * np.array([u[1] - u[3], u[2] - u[0], 0])
-    moment[2] = MOMENT * (u[0] - u[1] + u[2] - u[3])
-    thrust = np.array([0, 0, THRUST * u.sum() / MASS])
-    down = GRAVITY * R.T @ [0, 0, 1]
-    w_t = (moment + np.cross(INERTIA * w, w)) / INERTIA - damping * DRAG[1] * w
-    v_t = thrust - np.cross(w, v) - down - damping * DRAG[0] * v
-    cross = np.array([[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]])
-    return np.concatenate([(R @ cross).ravel(), R @ v, w_t, v_t])
-
-
-def _integrated(w, v, controls, damping, substeps=4):
-    """Gravity, w and v in the body frame [T, 9], by small Runge-Kutta steps."""
-    x, observed, dt = np.concatenate([np.eye(3).ravel(), np.zeros(3), w, v]), [], 0.005 / substeps
-    for u in controls:
-        for _ in range(substeps):
-            a = _rates(x, u, damping)
-            b = _rates(x + dt / 2 * a, u, damping)
-            c = _rates(x + dt / 2 * b, u, damping)
-            x = x + dt / 6 * (a + 2 * b + 2 * c + _rates(x + dt * c, u, damping))
-        observed.append(np.concatenate([-GRAVITY * x[:9].reshape(3, 3)[2], x[12:]]))
-    return np.array(observed)
+MASS, GRAVITY = 0.6, 9.81
 
 
 @pytest.mark.parametrize("damping", [False, True])
@@ -51,8 +18,9 @@ def test_it_follows_the_equations_of_the_thesis(damping):
     env = Quadcopter("native", damping=damping)
     state = jitted(env, "reset")(jax.random.key(3))
     actions = np.random.default_rng(0).uniform(-1, 1, (200, 4)).astype(np.float32)
-    w, v = np.asarray(state.obs[3:6], float), np.asarray(state.obs[6:], float)
-    expected = _integrated(w, v, 6.0 * actions.astype(float), damping)
+    first = np.concatenate([np.zeros(3), np.eye(3).ravel(), state.obs[6:], state.obs[3:6]])
+    x = follow(QuadcopterSE3(damping), first, actions)[1:]
+    expected = np.concatenate([-GRAVITY * x[:, 9:12], x[:, 15:], x[:, 12:15]], 1)
     path = along(env, state, actions)
     np.testing.assert_allclose(path.obs, expected, atol=2e-3)
     assert np.abs(expected).max() > 5

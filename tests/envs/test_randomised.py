@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 from worlds import make
 
-from hybrid_rl.envs.analytic.pendulum import Pendulum
-from hybrid_rl.envs.cartpole import Cartpole
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.training.episode import Episode
 
@@ -53,14 +51,6 @@ def test_each_episode_and_each_motor_has_its_own_and_keeps_it():
         np.testing.assert_array_equal(after.data.fields[name], value)
 
 
-@pytest.mark.parametrize(
-    ("env", "given", "line"),
-    [
-        (Cartpole("native"), {"mass": (2, 1)}, r"randomise.mass=.*: must be \[low, high\]"),
-        (Cartpole("native"), {"weight": (1, 2)}, r"episode\.randomise: .*'weight'"),
-        (Pendulum(), {"mass": (1, 2)}, "randomise=.*: only robots in MuJoCo have other bodies"),
-    ],
-)
-def test_ranges_that_cannot_be_drawn_are_refused(env, given, line):
-    with pytest.raises(ValueError, match=line):
-        Episode(env, randomise=given)
+def test_a_range_from_high_to_low_is_refused():
+    with pytest.raises(ValueError, match=r"randomise.mass=.*: must be \[low, high\]"):
+        Episode(make("cartpole"), randomise={"mass": (2, 1)})

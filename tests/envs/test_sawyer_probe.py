@@ -17,7 +17,9 @@ from hybrid_rl.envs.sawyer_probe import HOME, TIP, SawyerProbe
 
 POSE = (0.55, 0.02, 0.4)
 WORLD = SawyerProbe("native", theta=POSE)
-PLANE = ContactPlane(WORLD.objects, low=WORLD.low, high=WORLD.high, theta=POSE, radius=WORLD.radius)
+PLANE = ContactPlane(
+    objects=WORLD.objects, low=WORLD.low, high=WORLD.high, theta=POSE, radius=WORLD.radius
+)
 TRIALS = 4
 
 

@@ -5,9 +5,9 @@ import jax.numpy as jnp
 import mujoco
 import numpy as np
 import pytest
-from experts import EXPERTS, over_implementations, play
-from worlds import jitted, make, many, placed
+from worlds import IMPLEMENTATIONS, jitted, make, many, placed, play
 
+from hybrid_rl.envs.experts.push import PushController
 from hybrid_rl.envs.mujoco.kinematics import rotate_towards
 from hybrid_rl.envs.sawyer_push import ASSET, EXTRA, HEIGHT, HOME, TIP, SawyerPush
 
@@ -127,35 +127,10 @@ def test_push_starts_keep_their_distances():
     assert not states.terminated.any()
 
 
-@over_implementations("sawyer_push")
+@pytest.mark.parametrize("implementation", IMPLEMENTATIONS, ids="sawyer_push-{}".format)
 def test_the_expert_pushes_the_block_to_the_target(implementation):
-    path = play(make("sawyer_push", implementation), EXPERTS["sawyer_push"], 100)[1]
+    path = play(make("sawyer_push", implementation), PushController(), 100)[1]
     assert path.metrics["success"].any(1).all()
     height = path.data.qpos[..., 9]
     assert jnp.abs(height - HEIGHT).max() < 2e-3  # the block neither tips nor jumps
     assert jnp.abs(path.data.qvel).max() < 5.0
-
-
-@pytest.mark.parametrize(("mass", "friction"), [(0.1, 0.4), (0.2, 0.4), (0.1, 0.8)])
-def test_a_sliding_block_is_stopped_by_its_friction(mass, friction):
-    """After v^2 / (2 mu g), whatever its mass; within 10%, as it hops a little."""
-    env = SawyerPush("native", block_mass=mass, block_friction=friction)
-    model = env._body.model
-    assert model.body("cube").mass[0] == mass
-    data = mujoco.MjData(model)
-    data.qpos[:7] = HOME
-    data.qpos[7:14] = (0.6, 0.2, HEIGHT, 1, 0, 0, 0)
-    for _ in range(50):
-        mujoco.mj_step(model, data)
-    data.qvel[7], start = 0.5, data.qpos[7]
-    for _ in range(100):
-        mujoco.mj_step(model, data)
-    assert data.qpos[7] - start == pytest.approx(0.5**2 / (2 * 9.81 * friction), rel=0.1)
-
-
-def test_the_velocity_filter():
-    env = SawyerPush("native")
-    state = jitted(env, "reset")(jax.random.key(0))
-    for action, velocity in (([1.0, -1.0], [0.03, -0.03]), ([0.0, 0.0], [0.024, -0.024])):
-        state = jitted(env, "step")(state, jnp.array(action))
-        np.testing.assert_allclose(state.info["velocity"], velocity, rtol=1e-5)

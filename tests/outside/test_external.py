@@ -59,10 +59,6 @@ def test_spaces_of_any_form_are_flattened():
     assert (odd.spec, odd.parts) == (Spec(obs=7, act=2, dt=0.02), "a [4], b [3]")
     np.testing.assert_array_equal(odd.flat({"b": 1, "a": np.ones((2, 2))}), [1, 1, 1, 1, 0, 1, 0])
     assert counting().parts == ""
-    with pytest.raises(UsageError, match=r"Odd: has observations Box\(.*; they must be numbers in"):
-        External(make=Odd, kwargs={"obs": Box(-1, 1, (0,))})
-    with pytest.raises(UsageError, match=r"CartPole-v1: has actions Discrete\(2\); they must be a"):
-        External(id="CartPole-v1")
 
 
 def test_an_action_of_whole_numbers_is_the_nearest():
@@ -89,7 +85,7 @@ def test_a_time_limit_among_the_wrappers_is_that_of_the_episode():
         ({"id": "CartPole-v1"}, "CartPole-v1: has actions Discrete(2)"),
         ({"make": Odd, "kwargs": {"actions": Box(-np.inf, 1, (1,))}}, "finite bounds"),
         ({"make": "nowhere:Env"}, "env.make=nowhere:Env: cannot be imported (No module named"),
-        ({"make": "json:loads"}, "env.make=json:loads: TypeError"),
+        ({"make": Odd, "kwargs": {"obs": Box(-1, 1, (0,))}}, "they must be numbers in a form"),
         ({"make": type("Timeless", (Count,), {"metadata": {}})}, "does not say its time step"),
     ],
 )

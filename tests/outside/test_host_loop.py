@@ -125,7 +125,7 @@ def test_copies_step_as_in_gymnasiums_vector():
     vector = SyncVectorEnv([one, one], autoreset_mode=AutoresetMode.DISABLED)
     obs, _ = vector.reset(seed=[1, 2])
     np.testing.assert_array_equal(copies.reset(), obs)
-    copies.decisions[1] = 1
+    copies._vector.envs[1]._elapsed_steps = 1
     for u in np.float32(np.random.default_rng(0).integers(-4, 5, (4, 2, 1)) / 4):
         got, (obs, reward, *_) = copies.step(u), vector.step(2 * u)
         np.testing.assert_array_equal(got.obs, obs)

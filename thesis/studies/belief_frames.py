@@ -13,7 +13,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.core import ergodic, poses, resampling
+from hybrid_rl.core import ergodic, poses
 from hybrid_rl.errors import UsageError
 from hybrid_rl.thesis.studies.belief_panel import HALF, View, level
 from hybrid_rl.thesis.studies.recorded import Recorded
@@ -152,7 +152,7 @@ class Drawn:
                 log_p = jax.lax.map(lambda s: of(belief, s), grid, batch_size=512)
                 return len(log_p) * jnp.exp(ergodic.log_weights(log_p, share)) / BRIGHTEST
             if self._map is not None:
-                drawn = resampling.systematic(belief.log_w, SHADED, jnp.float32(0.5))
+                drawn = poses.systematic(belief.log_w, SHADED, jnp.float32(0.5))
                 belief = belief._replace(theta=belief.theta[drawn], log_w=jnp.zeros(SHADED))
             return jax.lax.map(lambda s: of(belief, s), grid, batch_size=512)
 
@@ -207,7 +207,7 @@ class Drawn:
         """The outlines [k, 2] of PARTICLES particles, or that of p = 1/2."""
         if self._map is None:
             return level(values, self.low, self.high, 0.5) if self.binary else []
-        drawn = resampling.systematic(belief.log_w, PARTICLES, jnp.float32(0.5))
+        drawn = poses.systematic(belief.log_w, PARTICLES, jnp.float32(0.5))
         middle = np.array(self._map.middle)
         result = []
         for x, y, angle in np.asarray(belief.theta[drawn]):

@@ -19,7 +19,6 @@ from hybrid_rl.analysis.style import (
     plain_log,
 )
 from hybrid_rl.core import poses as moves
-from hybrid_rl.core import resampling
 from hybrid_rl.thesis.studies.contact_maps_picture import marks_of
 from hybrid_rl.thesis.studies.contacts import (
     Trials,
@@ -252,7 +251,7 @@ def _filter(run: Trials) -> Any:
         state = jax.tree.map(lambda new, old: jnp.where(counts, new, old), after, state)
         report = belief.report(state)
         mean = jnp.stack([report[f"belief/mean_{axis}"] for axis in AXES])
-        drawn = resampling.systematic(state.log_w, SOME, jnp.float32(0.5))
+        drawn = moves.systematic(state.log_w, SOME, jnp.float32(0.5))
         return state, (mean, state.theta[drawn])
 
     @jax.jit

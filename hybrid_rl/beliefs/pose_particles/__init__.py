@@ -25,7 +25,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.beliefs.pose_particles import rejuvenation
-from hybrid_rl.core import poses, resampling
+from hybrid_rl.core import poses
 from hybrid_rl.core.batching import when_any
 from hybrid_rl.core.domain import Box
 from hybrid_rl.fields import Count, Positive, has, part
@@ -102,7 +102,7 @@ class PoseParticles:
 
     def _due(self, state: Particles) -> Array:
         """[] bool: whether to resample."""
-        few = resampling.effective(state.log_w) < self.particles / 2
+        few = poses.effective(state.log_w) < self.particles / 2
         due = few & (state.count % self.every == 0)
         return due | state.touched if self.kind == "manifold" else due
 
@@ -140,7 +140,7 @@ class PoseParticles:
 
     def _subset(self, state: Particles) -> Array:
         """Particles [subset, 3] in proportion to their weights."""
-        return state.theta[resampling.systematic(state.log_w, self.subset, jnp.float32(0.5))]
+        return state.theta[poses.systematic(state.log_w, self.subset, jnp.float32(0.5))]
 
     def information(self, state: Particles, s: Array) -> Array:
         """The information [] of a measurement at s [2], by `measure`."""
@@ -186,7 +186,7 @@ class PoseParticles:
         """The mean pose, its spread, the most likely particle, and the filter's health."""
         w = jax.nn.softmax(state.log_w)
         x, y = w @ state.theta[:, :2]
-        angle, length = resampling.circular(state.theta[:, 2], w)
+        angle, length = poses.circular(state.theta[:, 2], w)
         best = state.theta[jnp.argmax(state.log_like)]
         spread = jnp.sqrt(w @ jnp.sum((state.theta[:, :2] - jnp.stack([x, y])[None]) ** 2, -1))
         return {
@@ -198,7 +198,7 @@ class PoseParticles:
             "belief/best_angle": best[2],
             "belief/spread_position": spread,
             "belief/spread_angle": jnp.sqrt(-2 * jnp.log(jnp.clip(length, 1e-6, 1.0))),
-            "belief/effective": resampling.effective(state.log_w),
+            "belief/effective": poses.effective(state.log_w),
             "belief/accepted": state.accepted,
             "belief/full": (state.count >= self.capacity).astype(jnp.float32),
         }

@@ -20,7 +20,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import poses, resampling
+from hybrid_rl.core import poses
 
 SHARE = 4  # one of so many particles is drawn onto the manifold
 IMPOSSIBLE = -1e4  # log-weight of a pose that the prior excludes
@@ -71,7 +71,7 @@ def log_chance(p: Array, y: Array, trust: float) -> Array:
 
 def resampled(cloud: Cloud, key: Array) -> Cloud:
     """As many particles of equal weight. The key is consumed."""
-    drawn = resampling.systematic(cloud.log_w, len(cloud.theta), jax.random.uniform(key))
+    drawn = poses.systematic(cloud.log_w, len(cloud.theta), jax.random.uniform(key))
     return Cloud(cloud.theta[drawn], jnp.zeros(len(drawn)), cloud.log_like[drawn])
 
 
@@ -147,7 +147,7 @@ def _on_manifold(
     """
     shifting, turning, choosing = jax.random.split(key, 3)
     scale = _bandwidths(theta, jnp.exp(log_w))
-    drawn = resampling.systematic(log_w, count, jax.random.uniform(shifting))
+    drawn = poses.systematic(log_w, count, jax.random.uniform(shifting))
     angle = theta[drawn, 2] + scale[2] * jax.random.normal(turning, (count,))
     b = frame.outline[jax.random.randint(choosing, (count,), 0, len(frame.outline))]
     t = q[None] - jax.vmap(poses.rotated)(b - frame.middle[None], angle)
@@ -164,7 +164,7 @@ def _on_manifold(
 
 def _bandwidths(theta: Array, w: Array) -> Array:
     """The standard deviations [3] of H for particles [N, 3] with weights [N] that sum to 1."""
-    mean, length = w @ theta[:, :2], resampling.circular(theta[:, 2], w)[1]
+    mean, length = w @ theta[:, :2], poses.circular(theta[:, 2], w)[1]
     plane = w @ (theta[:, :2] - mean[None]) ** 2
     turn = jnp.minimum(-2 * jnp.log(jnp.maximum(length, 1e-6)), jnp.pi**2 / 3)
     scott = len(theta) ** (-2 / 7)
