@@ -121,7 +121,7 @@ def test_an_exported_policy_computes_in_float32():
     assert "bf16" not in made.mlir_module()
 
 
-def test_a_run_keeps_its_precision_and_can_change_it(tmp_path, capfd):
+def test_a_run_keeps_its_precision_and_can_change_it(tmp_path):
     """Its parameters and the states of its optimisers are float32 with each."""
 
     def called():
