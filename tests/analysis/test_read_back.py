@@ -10,7 +10,7 @@ import hybrid_rl as hr
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     path = tmp_path_factory.mktemp("run") / "sac"
-    run(path, "task=pendulum", "algo=sac", "num_seeds=2", "checkpoint_replay=true")
+    run(path, "task=pendulum", "algo=sac", "num_seeds=2", "total_steps=550", "replay.capacity=170")
     return path
 
 
