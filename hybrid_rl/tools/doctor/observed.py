@@ -142,8 +142,10 @@ def lag_of(run: Evidence) -> float:
     chance = t < agent.random_steps // agent.num_envs
     k, t = k[chance], t[chance]
     ages = np.arange(LAGS + 1)
-    sent = run.made.action[k[:, None], t[:, None] - ages]
-    seen, after = (each[k, t][:, run.moving] for each in (run.made.obs, run.made.next_obs))
+    made = run.made.obs, run.made.next_obs, run.made.action
+    obs, next_obs, action = map(np.asarray, made)
+    sent = action[k[:, None], t[:, None] - ages]
+    seen, after = (each[k, t][:, run.moving] for each in (obs, next_obs))
     return lag.estimated(seen, after, sent, np.tile(-ages, (len(k), 1)), np.ones(len(k)))
 
 
