@@ -90,8 +90,8 @@ MUTANTS = {
     ),
     "a resumed run forgets its record": Mutant(
         "hybrid_rl/run/checkpoints/store.py",
-        'Record(**meta["record"])',
-        'Record(**{**meta["record"], "wall_s": 0.0, "step": 0})',
+        'Record(**(own | {"ends": {}}))',
+        'Record(**(own | {"ends": {}, "wall_s": 0.0, "step": 0}))',
         "tests/run",
     ),
     "a misspelt override is ignored": Mutant(
@@ -126,8 +126,8 @@ MUTANTS = {
     ),
     "a broken-off episode leaves its plan": Mutant(
         "hybrid_rl/run/online.py",
-        "self._episode + 1\n        self._decide.begin()",
-        "self._episode + 1",
+        "zeros_like(self._past)\n        self._decide.begin()",
+        "zeros_like(self._past)",
         "tests/run/test_online.py",
     ),
     "the critic is its own target": Mutant(

@@ -1,4 +1,4 @@
-"""What the commands share: exit codes, one line for each error; without JAX.
+"""Exit codes of the commands, and one line for each error; without JAX.
 
 Exit codes: 0 done; 2 bad usage; 128 + number after a signal, as 130 after Ctrl-C and 143 after
 SIGTERM; 1 any other failure.

@@ -1,4 +1,4 @@
-"""How exploration around an equilibrium changes a Lyapunov function V, and a guard.
+"""Change of a Lyapunov function V by exploration around an equilibrium, and a guard.
 
     rate  = V(f(x, pi(x))) - V(x)                                     under the policy
     bound = max_t V(f(x_t, u_t)) - V(f(x_t, pi(x_t)))                 thesis eq. (6.15), beta

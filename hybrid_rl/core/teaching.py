@@ -1,4 +1,4 @@
-"""A teacher's answers, and its labels: a ring of observations and actions, and what is summed over.
+"""Labels of a teacher: a ring of observations and actions, and their sums.
 
 `Queried` is what a learner that asks a teacher keeps in `Params.labels`.
 """

@@ -70,7 +70,7 @@ def read(
     if not path.is_file():
         raise ValueError(f"{prefix} no such file{hint and '; '}{hint}")
     try:
-        with np.load(path) as data:
+        with path.open("rb") as opened, np.load(opened) as data:
             names = {*data.files} & {*needed, *header, ABOUT} if needed else data.files
             arrays = {name: data[name] for name in names}
     except Exception as error:  # whatever NumPy makes of damaged bytes

@@ -74,7 +74,8 @@ def known_lag(env: Robot, folder: Path) -> float | None:
 
 def published_lag(folder: Path, rows: np.ndarray) -> float:
     """The lag by the rows [N] of random decisions, which `known_lag` gives from now on."""
-    names = "obs", "next_obs", "sent", "times", "interval"
-    lag = estimated(*(rows[name] for name in names))
+    names, lag = ("obs", "next_obs", "sent", "times", "interval"), 0.0
+    if len(rows):
+        lag = estimated(*(rows[name] for name in names))
     handover.publish(folder / "lag", np.float64(lag), len(rows))
     return lag

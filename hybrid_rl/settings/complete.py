@@ -1,4 +1,4 @@
-"""What a run reads of a composed configuration, with every field of its parts.
+"""The part of a composed configuration that a run reads, with every field of its parts.
 
 A YAML file says only in what a part differs from its class. A field that no file sets has the
 default of the class; one without a default is the part of its name, as the `policy` of a planner is

@@ -74,7 +74,7 @@ class AheadController:
 
 
 def remembered(state: Any, u: Array) -> Any:
-    """The state after u [m] was sent; that of a controller that does not look ahead as it is."""
+    """The state after u [m] was sent; any other controller's as it is."""
     if not isinstance(state, AheadState):
         return state
     return state._replace(sent=jnp.concatenate((state.sent[1:], u[None])))

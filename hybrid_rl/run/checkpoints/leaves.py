@@ -7,6 +7,8 @@ their data, arrays without elements as their shape alone.
 import contextlib
 import io
 import json
+import logging
+import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -19,7 +21,7 @@ import numpy as np
 from hybrid_rl.errors import MisfitError
 from hybrid_rl.types import PyTree
 
-AFTERMATH = 0.5  # [s] in which tracebacks are printed after a failed write
+AFTERMATH = 0.5  # [s] in which TensorStore's threads print tracebacks after a failed write
 WRITTEN = "manifest.ocdbt"  # by Orbax as the last file: without it nothing can be read
 
 
@@ -46,6 +48,21 @@ def _named(tree: PyTree) -> list[tuple[str, jax.Array]]:
 
 
 @contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    """Suppress the output of Orbax and TensorStore."""
+    logger = logging.getLogger("absl")
+    level, hook = logger.level, sys.unraisablehook
+    logger.setLevel(logging.CRITICAL + 1)
+    sys.unraisablehook = lambda _: None
+    try:
+        with contextlib.redirect_stderr(io.StringIO()):
+            yield
+    finally:
+        logger.setLevel(level)
+        sys.unraisablehook = hook
+
+
+@contextlib.contextmanager
 def _plain(path: Path) -> Iterator[Path]:
     r"""A path to the folder `path` that Orbax takes literally: it reads [...] and \ as patterns."""
     path = path.resolve()
@@ -64,8 +81,7 @@ def write(path: Path, leaves: dict[str, np.ndarray]) -> None:
 
     filled = {name: leaf for name, leaf in leaves.items() if leaf.size}  # it refuses empty ones
     handler = ocp.PyTreeCheckpointHandler(use_compression=False)
-    quiet = contextlib.redirect_stderr(io.StringIO())  # of TensorStore's threads, after a failure
-    with quiet, _plain(path) as plain, ocp.Checkpointer(handler) as writer:
+    with _quiet(), _plain(path) as plain, ocp.Checkpointer(handler) as writer:
         try:
             writer.save(plain / "state", ocp.args.PyTreeSave(filled))
         except Exception:
