@@ -200,11 +200,8 @@ def refuse_edits(config: DictConfig, run_dir: Path) -> None:
 
 
 def _changes(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
-    """Lines about the settings that differ, of those that stay for the whole run.
-
-    random_steps may follow from total_steps.
-    """
-    free = (*OF_A_SESSION, "random_steps")
+    """Lines about the settings that differ, of those that stay for the whole run."""
+    free = (*OF_A_SESSION, "random_steps")  # which may follow from total_steps
     return changes(*({k: v for k, v in each.items() if k not in free} for each in (then, now)))
 
 

@@ -67,15 +67,16 @@ def flip(folder):
     return "SHA-256 differs"
 
 
-def flip_meta(folder):
-    path = folder / "meta.json"
-    path.write_text(path.read_text().replace("30", "31"))
-    return "meta.json has changed"
+def endless(folder):
+    path, files = folder / "manifest.json", '"files": {'
+    more = files + '"/dev/zero": {"bytes": 0, "sha256": ""},'
+    path.write_text(path.read_text().replace(files, more))
+    return "/dev/zero is missing, or no plain file"
 
 
 def delete(folder):
     largest_file(folder / "state").unlink()
-    return "cannot be read"
+    return "is missing"
 
 
 def cut_manifest(folder):
@@ -89,7 +90,7 @@ def without_manifest(folder):
     return "its writing was cut off"
 
 
-HARM = [truncate, flip, flip_meta, delete, cut_manifest, without_manifest]
+HARM = [truncate, flip, endless, delete, cut_manifest, without_manifest]
 
 
 @pytest.mark.parametrize("harm", HARM)
@@ -110,8 +111,7 @@ def test_nothing_sound_is_one_clear_line(three):
         checkpoint.restore(three, state_at(0))
     line = str(caught.value)
     assert "\n" not in line
-    assert "30" in line
-    assert "20" in line
+    assert all(step in line for step in ("20", "30"))
     with pytest.raises(CheckpointError, match="holds no checkpoint"):
         checkpoint.restore(three / "nowhere", state_at(0))
 

@@ -38,10 +38,12 @@ def verify(folder: Path, contents: bool = True) -> str | None:
         files = [(name, entry["bytes"], entry["sha256"]) for name, entry in listed.items()]
     except FileNotFoundError:
         return f"it has no {MANIFEST}, so its writing was cut off"
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as problem:
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError) as problem:
         return f"its {MANIFEST} cannot be read ({type(problem).__name__})"
     for name, size, sha256 in files:
         try:
+            if not (folder / name).is_file():  # a pipe or a device might have no end
+                return f"{name} is missing, or no plain file"
             if (size_now := (folder / name).stat().st_size) != size:
                 return f"{name} has {size_now} bytes instead of {size}"
             if contents and digest(folder / name) != sha256:
