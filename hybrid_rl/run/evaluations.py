@@ -74,8 +74,9 @@ class Evaluator:
 
         def one(f: Callable[..., Any], numbers: Any, *given: Any) -> Any:
             """`begin` or `advance` of one learner with numbers [] of the loop's axis."""
-            acting = loop.axis.put(controller, f"controllers.{mode}", numbers)
-            return f(loop.agent.episode, acting, *given)
+            put, episode = loop.axis.put, loop.agent.episode
+            acting = put(controller, f"controllers.{mode}", numbers)
+            return f(put(episode, "agent.episode", numbers), acting, *given)
 
         first, more = partial(one, begin), partial(one, advance)
         program = loop.shard(jax.vmap(first), SEEDS, SEEDS)

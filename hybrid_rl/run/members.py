@@ -83,9 +83,6 @@ def axis_of(values: Sequence[Mapping[str, float]], runs: Sequence[Run]) -> Axis:
         axis = Axis.of(trees, tuple(map(folder.words, values)))
     except DifferError as error:
         raise _refused(values, error.path) from error
-    for path in axis.numbers:
-        if path.startswith("agent.episode."):
-            raise _refused(values, path, "all learners have the same world")
     for key in values[0]:
         rest = values[0].items() - {(key, values[0][key])}
         same = [tree for tree, own in zip(trees, values, strict=True) if rest <= own.items()]
@@ -93,12 +90,10 @@ def axis_of(values: Sequence[Mapping[str, float]], runs: Sequence[Run]) -> Axis:
             raise _refused(values, key, "it is no number of a learner or a controller")
     if axis.numbers:
         loop = loop_of(runs[0].agent, runs[0].seeds * axis.count, 1, axis=axis)
-        one = jax.tree.map(
-            lambda leaf: jax.ShapeDtypeStruct(leaf.shape[1:], leaf.dtype), loop.shapes()
-        )
         try:
+            one = jax.tree.map(lambda x: jax.ShapeDtypeStruct(x.shape[1:], x.dtype), loop.shapes())
             jax.eval_shape(loop.step, one, jnp.int32(0))  # nothing is compiled
-        except jax.errors.ConcretizationTypeError as error:
+        except jax.errors.JAXTypeError as error:
             raise _refused(values, "") from error
     return axis
 

@@ -1,5 +1,6 @@
 """From overrides to parts: compose conf/, check it, build a run."""
 
+import math
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext
@@ -186,7 +187,8 @@ def _acting(parts: DictConfig) -> tuple[Episode, dict[str, Controller]]:
     """The episodes, and the controllers as they act in training."""
     episode = _episode(parts)  # first, as controllers may hold their reward, too
     each = ((k, _instantiate(v, f"controllers.{k}")) for k, v in parts.controllers.items())
-    lag, most = episode.known_lag, PENDING * isinstance(episode.env, Robot)
+    longest = math.ceil(round(episode.longest / episode.spec.dt, 6)) if episode.knows_lag else 0
+    lag, most = episode.known_lag, max(longest, PENDING * isinstance(episode.env, Robot))
     return episode, {k: ahead(controller, lag, most) for k, controller in each}
 
 

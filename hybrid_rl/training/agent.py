@@ -214,13 +214,11 @@ class Agent:
     ) -> AgentState:
         """`state` after action [E, m] led from `state.env` to `now` [E, ...].
 
-        The memory gets the decision, with the action that acted if some act late, and where an
+        The memory gets the decision, with the action that acted by the known lag, and where an
         episode is done, another one begins. A world that resets itself gives `after` [E, ...]:
         `now`, or the first state of the next episode.
         """
-        if self.episode.known_lag:
-            sent = None if now.clock is None else now.clock.sent
-            action = jax.vmap(acted)(state.control, action) if sent is None else sent.acted
+        action = jax.vmap(acted)(state.control, action)
         new = Transition(state.env.obs, action, now.reward, now.terminated, now.truncated, now.obs)
         if after is None:
             keys = Keys.of(state.key, self.num_envs) if keys is None else keys

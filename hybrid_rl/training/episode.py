@@ -64,6 +64,7 @@ class Episode:
     jitter: NotNegative = 0.0  # [s] most that it is later than that; never before another
     loss: Fraction = 0.0  # probability that it never arrives: the last that did goes on acting
     lag: NotNegative | None = None  # [s] that the method knows; None: delay and jitter / 2
+    longest: NotNegative = 0.0  # [s] longest lag to be ready for, where it is swept
     sensor_noise: NotNegative | tuple[NotNegative, ...] = 0.0  # std of the observation, or [o]
     action_noise: NotNegative = 0.0  # [u] std of what is added to an action when it arrives
     randomise: Ranges | None = None  # of each episode's body; also as {NAME: [low, high]}
@@ -97,13 +98,18 @@ class Episode:
     @property
     def late(self) -> bool:
         """Whether actions arrive late, or not at all."""
-        return bool(self.delay or self.jitter or self.loss)
+        return bool(self.longest or self.delay or self.jitter or self.loss)
 
     @property
     def known_lag(self) -> float:
         """The lag [decisions] that the method knows, from an observation until its action acts."""
         lag = self.delay + self.jitter / 2 if self.lag is None else self.lag
         return round(lag / self.spec.dt, 6)
+
+    @property
+    def knows_lag(self) -> bool:
+        """Whether the method knows that its actions act late."""
+        return bool(self.lag if self.lag is not None else self.longest or self.known_lag)
 
     @property
     def world(self) -> Env:
@@ -114,8 +120,7 @@ class Episode:
         env = env if self.constraint is None else Constrained(env, self.constraint)
         env = Disturbed(env, self.action_noise) if self.action_noise else env
         if self.late:
-            delay, jitter = (round(t / env.spec.dt, 6) for t in (self.delay, self.jitter))
-            env = Late(env, delay, jitter, self.loss)
+            env = Late(env, self.delay, self.jitter, self.loss, self.longest)
         return Sensed(env, self.std) if any(self.std) else env
 
     @property

@@ -163,13 +163,14 @@ class Late(Around):
     a decision, or steps in another way, gets the mean of both actions, by their shares.
     """
 
-    delay: float  # [decisions]
-    jitter: float = 0.0  # [decisions] most that an action is later than that, uniform
+    delay: float  # [s]
+    jitter: float = 0.0  # [s] most that an action is later than that, uniform
     loss: float = 0.0  # probability that an action never arrives
+    longest: float = 0.0  # [s] that an action takes; 0: no longer than these say
 
     def reset(self, key: Array) -> EnvState:
         """The first state, with no action sent."""
-        state, count = super().reset(key), int(self.delay + self.jitter) + 1
+        state, count = super().reset(key), int(self._longest) + 1
         random, drawing = self.jitter or self.loss, jax.random.fold_in(key, 8)
         none, waits = jnp.zeros((count, self.spec.act)), jnp.full(count, jnp.inf)
         sent = Sent(none, waits, none[0], none[0], jax.random.key_data(drawing) if random else None)
@@ -196,10 +197,10 @@ class Late(Around):
 
     def _send(self, sent: Sent, action: Array) -> Sent:
         """`sent` with one action more, the oldest of which cannot arrive any more."""
-        wait, drawing = jnp.float32(self.delay), sent.drawing
+        wait, drawing = jnp.float32(self._decisions(self.delay)), sent.drawing
         if drawing is not None:
             key, losing, later = jax.random.split(jax.random.wrap_key_data(drawing), 3)
-            wait = wait + self.jitter * jax.random.uniform(key)
+            wait = wait + self._decisions(self.jitter) * jax.random.uniform(key)
             before = jnp.where(jnp.isfinite(sent.waits), sent.waits, -jnp.inf).max()
             lost = jax.random.uniform(losing) < self.loss
             wait = jnp.where(lost, jnp.inf, jnp.maximum(wait, before))
@@ -208,9 +209,17 @@ class Late(Around):
         waits = jnp.append(sent.waits[1:], wait)
         return sent._replace(actions=actions, waits=waits, drawing=drawing)
 
+    def _decisions(self, time: float) -> float:
+        return round(time / self.spec.dt, 6)
+
+    @property
+    def _longest(self) -> float:
+        """[decisions]"""
+        return self._decisions(self.longest or self.delay + self.jitter)
+
     def _steps(self, state: EnvState) -> int:
         """Steps of the physics in a decision; 0: actions arrive between decisions, or no MuJoCo."""
-        if float(self.delay).is_integer() and not self.jitter:
+        if not self.longest and self._longest.is_integer() and not self.jitter:
             return 0
         kept = filter(_simulated, jax.tree.leaves(state.data, is_leaf=_simulated))
         times = [mjcf.load(each.asset).opt.timestep for each in kept]

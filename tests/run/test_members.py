@@ -131,7 +131,7 @@ def test_a_learner_that_diverges_ends_alone(tmp_path, capfd):
         ("policy_learner.tau=[0.1,0.1]", "=[0.1, 0.1]: must be a list of different numbers"),
         ("policy_learner.tua=[0.1,0.2]", "sac has no such key; did you mean policy_learner.tau?"),
         ("planner.temperature=[0.1,0.2]", "sweep.planner.temperature: sac has no such key"),
-        ("episode.sensor_noise=[0.1,0.2]", "as all learners have the same world; use -m"),
+        ("episode.sensor_noise=[0.1,0.2]", "as they decide what is compiled; use -m"),
         ("seed=[1,2]", "it is no number of a learner or a controller; use -m seed=1,2"),
         ("num_envs=[1,2]", "use -m num_envs=1,2"),
     ],
