@@ -1,6 +1,8 @@
 """The process that owns a robot: it decides at a fixed rate and never waits for its learner.
 
-    observe -> decide with the newest parameters -> limit -> apply -> append a row -> sleep
+    observe -> decide with the newest parameters -> limit -> hold -> apply -> append a row -> sleep
+
+An action is held back until it acts whole decisions after its observation (`training.ahead`).
 
 Files in a folder connect it with the learner: `rows` (row_log) in one direction, `parameters`
 (handover) in the other, and `stop`, whose existence ends the motion. So either process can be
@@ -33,9 +35,12 @@ from hybrid_rl.outside.lag import known_lag
 from hybrid_rl.outside.robot_process import WAITING, report
 from hybrid_rl.outside.row_log import RowLog, row_type
 from hybrid_rl.training.agent import Agent
+from hybrid_rl.training.wrappers import whole
 from hybrid_rl.types import Params
 
 RESET_S = 120.0  # [s] that a robot's `reset` may take
+LATEST = 0.9  # of a period, in which an action is sent
+AGEING = 0.99  # of the greatest age of observations, in a decision
 RETRY_S = 1.0  # [s] between attempts to reach a robot that does not answer
 LOST = 3  # exit code: the robot does not answer
 OBSERVED = "must return (observation [{}], its time.monotonic()); it returned {}"
@@ -80,6 +85,7 @@ class Actor:
         if self.params is not None:
             self._decide.take(self.params)
         self._lag = known_lag(self.env, self.folder) or 0.0
+        self._age = 0.0  # [s] of observations that a decision begins with, at most, of late
         self._version, self._beat, self._allowed = 0, time.monotonic(), math.inf
         self._made, self._ended = time.time(), False
         self._since = math.inf  # when the robot fell silent, if it has begun no episode since
@@ -162,12 +168,15 @@ class Actor:
 
         stamp: of the observation; begin: of the period.
         """
-        lag = min((time.monotonic() - stamp + self._lag) / self.spec.dt, PENDING)
-        self._decide.informed(np.array([u for _, u in self._past[::-1]]), max(lag, 0.0))
+        age, dt = time.monotonic() - stamp, self.spec.dt
+        self._age = max(age, AGEING * self._age + (1 - AGEING) * age)
+        lag = min(whole((self._age + self._lag) / dt), PENDING)  # [decisions]
+        self._decide.informed(np.array([u for _, u in self._past[::-1]]), lag)
         u, rate, last = self._decide(obs, self._number), self.env.rate or 2.0, self._past[0][1]
         action = np.clip(np.clip(u, last - rate, last + rate), -1, 1)
         if not np.isfinite(action).all():
             return None
+        _sleep_until(min(stamp + lag * dt - self._lag, begin + LATEST * dt))
         self._apply(action)
         now, row = time.monotonic(), np.zeros((), self._kind)
         row["obs"], row["action"], row["version"] = obs, action, self._version

@@ -46,7 +46,7 @@ from hybrid_rl.settings.complete import LACKING, complete, refusal, select
 from hybrid_rl.settings.compose import explain
 from hybrid_rl.settings.groups import CONF, search_path
 from hybrid_rl.settings.words import forced, raw_values, value_of
-from hybrid_rl.training.ahead import ahead
+from hybrid_rl.training.ahead import acting_ahead
 from hybrid_rl.training.contract import check_acting
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import Imagination
@@ -85,8 +85,7 @@ def apply_changes(
     rest = {key: value for key, value in changes.items() if key not in goal}
     if rest:
         assert trained.config is not None
-        episode, acting = disturbed(trained.config, rest), trained.controllers
-        acting = {mode: ahead(each, episode.known_lag) for mode, each in acting.items()}
+        episode, acting = acting_ahead(disturbed(trained.config, rest), trained.controllers)
         trained = replace(trained, episode=episode, controllers=acting)
     return trained, {**goal, **rest}
 

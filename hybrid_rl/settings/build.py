@@ -1,6 +1,5 @@
 """From overrides to parts: compose conf/, check it, build a run."""
 
-import math
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext
@@ -43,7 +42,7 @@ from hybrid_rl.settings.values import (
 )
 from hybrid_rl.settings.words import forced, name, of_job, plain, raw_values, typed_values
 from hybrid_rl.training.agent import Agent
-from hybrid_rl.training.ahead import ahead
+from hybrid_rl.training.ahead import acting_ahead
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import Imagination
 
@@ -187,9 +186,7 @@ def _acting(parts: DictConfig) -> tuple[Episode, dict[str, Controller]]:
     """The episodes, and the controllers as they act in training."""
     episode = _episode(parts)  # first, as controllers may hold their reward, too
     each = ((k, _instantiate(v, f"controllers.{k}")) for k, v in parts.controllers.items())
-    longest = math.ceil(round(episode.longest / episode.spec.dt, 6)) if episode.knows_lag else 0
-    lag, most = episode.known_lag, max(longest, PENDING * isinstance(episode.env, Robot))
-    return episode, {k: ahead(controller, lag, most) for k, controller in each}
+    return acting_ahead(episode, dict(each), PENDING * isinstance(episode.env, Robot))
 
 
 def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller], Imagination | None]:

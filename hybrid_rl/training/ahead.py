@@ -1,18 +1,18 @@
 """u = u'(o'): a controller whose action acts late acts at the observation predicted for then.
 
-    x_{j+1} = x_j + g_j (f(x_j, a_j) - x_j),   g_j = clip(lag - j, 0, 1),   o' = x_K's observation
-    a_j = share u_{j-w-1} + (1 - share) u_{j-w},   lag = w + share          u_i: sent, u_{-1} last
+    x_{j+1} = f(x_j, u_{j-k}),   j = 0 ... k-1,   o' = x_k's observation       u_j: sent, u_{-1} last
 
-The mean of the model rolls the newest observation forward over the actions that are pending, those
-that were sent and have not acted yet; of a fraction of a decision, by a straight line. So model,
-policy, critic and plans are those of the undelayed robot, if transitions hold the action that
-acted, and another lag needs no learning. Without a model, as in `sac`, nothing is predicted.
+The mean of the model rolls the newest observation forward over the k actions that are pending, those
+that were sent and have not acted yet. So model, policy, critic and plans are those of the undelayed
+robot, if transitions hold the action that acted, and another lag needs no learning. Of a part of a
+decision a model of whole ones says nothing: who sends an action holds it back until it acts whole
+decisions after its observation (`wrappers.whole`). Without a model, as in `sac`, nothing is predicted.
 
 Source: Derman et al. 2021, "Acting in delayed environments with non-stationary Markov policies";
-Agarwal and Aggarwal 2021.
+Agarwal and Aggarwal 2021; Wang et al. 2025, "A conservative agent for random delays", hold actions.
 """
 
-import math
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -21,9 +21,12 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import lifting
+from hybrid_rl.core.batching import where
 from hybrid_rl.fields import Count, NotNegative, part
 from hybrid_rl.protocols import Controller, Model
 from hybrid_rl.protocols.contract import parts
+from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.wrappers import whole
 from hybrid_rl.types import Params, Spec
 
 
@@ -41,7 +44,7 @@ class AheadController:
 
     controller: Controller
     model: Model
-    lag: NotNegative = 0.0  # [decisions] from an observation until its action acts
+    lag: NotNegative = 0.0  # [decisions] from an observation until its action acts, rounded
     most: Count = 1  # K [decisions] longest lag that is predicted
 
     def init(self, spec: Spec) -> AheadState:
@@ -64,8 +67,7 @@ class AheadController:
         """The planning state at which an action that is sent at x begins to act."""
         for j in range(self.most):
             after = self.model.step(params.model, x, _acting(state, self.most + 1 + j))
-            gone = jnp.clip(state.lag - j, 0, 1)
-            x = jax.tree.map(lambda a, b, gone=gone: _between(a, b, gone), x, after)
+            x = where(j < _pending(state), after, x)
         return x
 
     def greedy(self) -> "AheadController":
@@ -85,19 +87,14 @@ def acted(state: Any, u: Array) -> Array:
     return _acting(state, len(state.sent) - 1) if isinstance(state, AheadState) else u
 
 
+def _pending(state: AheadState) -> Array:
+    """k [], the actions that are pending."""
+    return jnp.round(state.lag).astype(int)
+
+
 def _acting(state: AheadState, now: int) -> Array:
     """The action [m] that acts while `sent[now]` is on its way, perhaps a later one."""
-    whole = jnp.floor(state.lag)
-    share, at, last = state.lag - whole, now - whole.astype(int), len(state.sent) - 1
-    older, newer = (state.sent[jnp.clip(at - i, 0, last)] for i in (1, 0))
-    return share * older + (1 - share) * newer
-
-
-def _between(a: Array, b: Array, share: Array) -> Array:
-    """a + share (b - a); what is no real number is that of the nearer end."""
-    if not jnp.issubdtype(a.dtype, jnp.floating):
-        return jnp.where(share < 0.5, a, b)
-    return jnp.where(share > 0, a + share * (b - a), a)
+    return state.sent[jnp.clip(now - _pending(state), 0, len(state.sent) - 1)]
 
 
 def ahead(controller: Controller, lag: float, most: int = 0) -> Controller:
@@ -108,7 +105,22 @@ def ahead(controller: Controller, lag: float, most: int = 0) -> Controller:
     if isinstance(controller, AheadController):
         controller = controller.controller
     models = (inner for _, name, _, inner in parts(controller) if name == "model")
-    model, most = next(models, None), max(most, math.ceil(lag))
+    model, most = next(models, None), max(most, round(lag))
     return (
         controller if model is None or not most else AheadController(controller, model, lag, most)
     )
+
+
+def acting_ahead(
+    episode: Episode, controllers: Mapping[str, Controller], most: int = 0
+) -> tuple[Episode, dict[str, Controller]]:
+    """The controllers, each `ahead` by what is known of the episode's lag, and the episode.
+
+    If none predicts anything nothing is known, so that no action is held back.
+    """
+    longest = int(whole(episode.longest / episode.spec.dt)) if episode.knows_lag else 0
+    lag, most = episode.known_lag, max(most, longest)
+    acting = {mode: ahead(each, lag, most) for mode, each in controllers.items()}
+    if episode.late and not any(isinstance(each, AheadController) for each in acting.values()):
+        episode = replace(episode, lag=0.0)
+    return episode, acting

@@ -2,7 +2,8 @@
 
 A controller sees o + sensor_noise N(0, I); environment, reward and constraint see o. Its action u
 arrives `delay` + `jitter` U(0, 1) seconds later, as clip(u + action_noise N(0, I)), or is lost, and
-never overtakes another. What acted in a decision is `state.clock.sent.acted`. An expert who is
+never overtakes another. If the method knows of that, it is sent so much later that it acts whole
+decisions after its observation, on average (`wrappers.whole`). What acted in a decision is `state.clock.sent.acted`. An expert who is
 disturbed in this way demonstrates how to return (Laskey et al. 2017, "DART: noise injection for
 robust imitation learning"). With `randomise` each episode has another body
 (`envs/mujoco/randomised.py`).
@@ -33,6 +34,7 @@ from hybrid_rl.training.wrappers import (
     Randomised,
     Repeated,
     Sensed,
+    whole,
 )
 from hybrid_rl.types import EnvState, Spec
 
@@ -63,7 +65,7 @@ class Episode:
     delay: NotNegative = 0.0  # [s] until an action arrives
     jitter: NotNegative = 0.0  # [s] most that it is later than that; never before another
     loss: Fraction = 0.0  # probability that it never arrives: the last that did goes on acting
-    lag: NotNegative | None = None  # [s] that the method knows; None: delay and jitter / 2
+    lag: NotNegative | None = None  # [s] that it knows; None: delay and jitter / 2
     longest: NotNegative = 0.0  # [s] longest lag to be ready for, where it is swept
     sensor_noise: NotNegative | tuple[NotNegative, ...] = 0.0  # std of the observation, or [o]
     action_noise: NotNegative = 0.0  # [u] std of what is added to an action when it arrives
@@ -102,14 +104,27 @@ class Episode:
 
     @property
     def known_lag(self) -> float:
-        """The lag [decisions] that the method knows, from an observation until its action acts."""
-        lag = self.delay + self.jitter / 2 if self.lag is None else self.lag
-        return round(lag / self.spec.dt, 6)
+        """The lag [decisions] that the method knows, from an observation until its action acts.
+
+        It is whole, as actions are held back, or rounded in a world that is late by itself.
+        """
+        lag = self._lag / self.spec.dt
+        return whole(lag) if self.late else float(round(lag))
 
     @property
     def knows_lag(self) -> bool:
         """Whether the method knows that its actions act late."""
-        return bool(self.lag if self.lag is not None else self.longest or self.known_lag)
+        return bool(self.longest or self._lag) if self.lag is None else self.lag > 0
+
+    @property
+    def _lag(self) -> float:
+        """[s]"""
+        return self.delay + self.jitter / 2 if self.lag is None else self.lag
+
+    def _held(self, dt: float) -> float:
+        """Time [s] for which an action is held back before it is sent; dt: of a decision."""
+        rest = whole(self._lag / dt) * dt - self._lag if self.knows_lag else 0.0
+        return rest * (rest > 0)
 
     @property
     def world(self) -> Env:
@@ -120,7 +135,8 @@ class Episode:
         env = env if self.constraint is None else Constrained(env, self.constraint)
         env = Disturbed(env, self.action_noise) if self.action_noise else env
         if self.late:
-            env = Late(env, self.delay, self.jitter, self.loss, self.longest)
+            delay = self.delay + self._held(env.spec.dt)
+            env = Late(env, delay, self.jitter, self.loss, self.longest)
         return Sensed(env, self.std) if any(self.std) else env
 
     @property

@@ -7,6 +7,7 @@ ones made: a limit counts rewards before a constraint's price, a constraint judg
 arrived and the observation without noise.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -23,6 +24,14 @@ from hybrid_rl.protocols import Constraint, Env, Goal
 from hybrid_rl.types import Clock, EnvState, PyTree, Sent, Spec
 
 VIOLATED = "violation"  # in `metrics`: 1 where the decision violates the constraint, else 0
+
+
+SLIGHT = 0.1  # [decisions] that an action may act later than a whole number of them
+
+
+def whole(lag: Any) -> Any:
+    """A lag [decisions], a number or traced, once it is held back until it is whole."""
+    return float(math.ceil(lag - SLIGHT)) if isinstance(lag, float) else jnp.ceil(lag - SLIGHT)
 
 
 @dataclass(frozen=True)
@@ -170,7 +179,7 @@ class Late(Around):
 
     def reset(self, key: Array) -> EnvState:
         """The first state, with no action sent."""
-        state, count = super().reset(key), int(self._longest) + 1
+        state, count = super().reset(key), int(self._longest) + 1 + bool(self.longest)
         random, drawing = self.jitter or self.loss, jax.random.fold_in(key, 8)
         none, waits = jnp.zeros((count, self.spec.act)), jnp.full(count, jnp.inf)
         sent = Sent(none, waits, none[0], none[0], jax.random.key_data(drawing) if random else None)
