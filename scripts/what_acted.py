@@ -2,8 +2,8 @@
 
     python -m scripts.what_acted latency_s=0.02 jitter_s=0.005 lost=0.01 out=what_acted.json
 
-A half-cheetah in wall-clock time, with random decisions. FILE has the mean over the decisions of
-the share of the physics steps between their two observations in which acted: `own` the action of the
+A half-cheetah in wall-clock time, with random decisions. FILE has means over the decisions of the
+share of the physics steps between their two observations in which acted: `own` the action of the
 decision, `before` the one before it, and `believed` what the learner says that acted, by the lag
 that it estimated: the overlap of its shares with the true ones.
 """
@@ -19,7 +19,6 @@ from typing import Any
 import numpy as np
 
 from hybrid_rl.cli.arguments import Argument, number, output, read, whole
-from hybrid_rl.envs.adapters.robot import PENDING
 from hybrid_rl.envs.adapters.stand_in import HalfCheetah
 from hybrid_rl.outside.lag import estimated, shares
 from hybrid_rl.outside.row_log import RowLog

@@ -85,6 +85,7 @@ class Actor:
         if self.params is not None:
             self._decide.take(self.params)
         self._lag = known_lag(self.env, self.folder) or 0.0
+        self._why = ""  # there are no observations
         self._age = 0.0  # [s] of observations that a decision begins with, at most, of late
         self._version, self._beat, self._allowed = 0, time.monotonic(), math.inf
         self._made, self._ended = time.time(), False
@@ -152,7 +153,7 @@ class Actor:
                     if self._record(row, obs, taken):
                         return None
             elif time.monotonic() - heard > self.env.silence_s:
-                return self._silent(f"no observation for {self.env.silence_s:g} s")
+                return self._silent(f"no observation for {self.env.silence_s:g} s{self._why}")
             row = None if obs is None else self._acted(obs, stamp, begin)
             before = stamp
             if row is None:
@@ -222,6 +223,8 @@ class Actor:
                 raise WorldError(f"{self.env.name}: observe: {line}")
             if age <= most and np.isfinite(obs).all():  # a time that is NaN is no time
                 return obs, stamp
+            words = f"{1e3 * age:.0f} ms old, and env.stale allows {1e3 * most:.0f} ms"
+            self._why = f"; the newest was {words}"
         self.counts.stale += 1
         return None, 0.0
 

@@ -1,28 +1,28 @@
 """u = u'(o'): a controller whose action acts late acts at the observation predicted for then.
 
-    x_{j+1} = f(x_j, u_{j-k}),   j = 0 ... k-1,   o' = x_k's observation       u_j: sent, u_{-1} last
+    x_{j+1} = f(x_j, u_{j-k}),   j = 0 ... k-1,   o' = x_k's observation     u_j: sent, u_{-1} last
 
-The mean of the model rolls the newest observation forward over the k actions that are pending, those
-that were sent and have not acted yet. So model, policy, critic and plans are those of the undelayed
-robot, if transitions hold the action that acted, and another lag needs no learning. Of a part of a
-decision a model of whole ones says nothing: who sends an action holds it back until it acts whole
-decisions after its observation (`wrappers.whole`). Without a model, as in `sac`, nothing is predicted.
+The mean of the model rolls the newest observation forward over the k actions that are pending:
+sent, and not acting yet. So model, policy, critic and plans are those of the undelayed robot, if
+transitions hold the action that acted, and another lag needs no learning. Of a part of a decision
+a model of whole ones says nothing, so an action is held back until it acts whole decisions after
+its observation (`wrappers.whole`). Without a model, as in `sac`, nothing is predicted.
 
 Source: Derman et al. 2021, "Acting in delayed environments with non-stationary Markov policies";
-Agarwal and Aggarwal 2021; Wang et al. 2025, "A conservative agent for random delays", hold actions.
+Agarwal and Aggarwal 2021. Held back: arXiv 2507.18992, a conservative agent for random delays.
 """
 
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
-import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import lifting
 from hybrid_rl.core.batching import where
 from hybrid_rl.fields import Count, NotNegative, part
+from hybrid_rl.networks.precision import using
 from hybrid_rl.protocols import Controller, Model
 from hybrid_rl.protocols.contract import parts
 from hybrid_rl.training.episode import Episode
@@ -64,10 +64,11 @@ class AheadController:
         return u, remembered(state._replace(inner=inner), u), metrics
 
     def predicted(self, params: Params, state: AheadState, x: Any) -> Any:
-        """The planning state at which an action that is sent at x begins to act."""
-        for j in range(self.most):
-            after = self.model.step(params.model, x, _acting(state, self.most + 1 + j))
-            x = where(j < _pending(state), after, x)
+        """The planning state at which an action that is sent at x begins to act, in float32."""
+        with using("float32"):
+            for j in range(self.most):
+                after = self.model.step(params.model, x, _acting(state, self.most + 1 + j))
+                x = where(j < _pending(state), after, x)
         return x
 
     def greedy(self) -> "AheadController":

@@ -3,10 +3,10 @@
 A controller sees o + sensor_noise N(0, I); environment, reward and constraint see o. Its action u
 arrives `delay` + `jitter` U(0, 1) seconds later, as clip(u + action_noise N(0, I)), or is lost, and
 never overtakes another. If the method knows of that, it is sent so much later that it acts whole
-decisions after its observation, on average (`wrappers.whole`). What acted in a decision is `state.clock.sent.acted`. An expert who is
-disturbed in this way demonstrates how to return (Laskey et al. 2017, "DART: noise injection for
-robust imitation learning"). With `randomise` each episode has another body
-(`envs/mujoco/randomised.py`).
+decisions after its observation, on average (`wrappers.whole`). What acted in a decision is
+`state.clock.sent.acted`. An expert who is disturbed in this way demonstrates how to return (Laskey
+et al. 2017, "DART: noise injection for robust imitation learning"). With `randomise` each episode
+has another body (`envs/mujoco/randomised.py`).
 """
 
 from collections.abc import Mapping
@@ -118,7 +118,7 @@ class Episode:
 
     @property
     def _lag(self) -> float:
-        """[s]"""
+        """Of known delay [s]."""
         return self.delay + self.jitter / 2 if self.lag is None else self.lag
 
     def _held(self, dt: float) -> float:

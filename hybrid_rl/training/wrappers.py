@@ -223,7 +223,7 @@ class Late(Around):
 
     @property
     def _longest(self) -> float:
-        """[decisions]"""
+        """Of an action [decisions]."""
         return self._decisions(self.longest or self.delay + self.jitter)
 
     def _steps(self, state: EnvState) -> int:

@@ -86,7 +86,9 @@ def test_jitter_and_loss_have_their_statistics():
     env, T = Pendulum(), 4000
     ramp = np.arange(T, dtype=np.float32)[:, None]
     dt = env.spec.dt
-    acted = moved(Episode(env, 10 * T, delay=1.3 * dt, jitter=0.5 * dt, lag=0.0), ramp).clock.sent.acted
+    acted = moved(
+        Episode(env, 10 * T, delay=1.3 * dt, jitter=0.5 * dt, lag=0.0), ramp
+    ).clock.sent.acted
     lag = ramp[5:, 0] - acted[5:, 0]
     assert (np.diff(acted[:, 0]) >= 0).all()  # none overtakes another
     assert lag.min() >= 1.3 - 1e-3
@@ -100,7 +102,12 @@ def test_jitter_and_loss_have_their_statistics():
 
 @pytest.mark.parametrize(
     ("algo", "given"),
-    [("sac", {}), ("nn_mppi", {"lag": 0.0}), ("nn_mppi", {}), ("nn_mppi", {"delay": 0.0, "lag": LATE})],
+    [
+        ("sac", {}),
+        ("nn_mppi", {"lag": 0.0}),
+        ("nn_mppi", {}),
+        ("nn_mppi", {"delay": 0.0, "lag": LATE}),
+    ],
 )
 def test_transitions_hold_what_acted(algo, given):
     """Three decisions before; or what was sent, if there is no model or no lag is known.
