@@ -35,6 +35,7 @@ class Spec(NamedTuple):
     act: int  # m
     dt: float  # [s] between two decisions
     state: int | None = None  # n; None: the observation is the planning state
+    newest: int | None = None  # of o, if the rest is the history before it (core.history)
 
     @property
     def n(self) -> int:
@@ -59,7 +60,7 @@ class Clock(NamedTuple):
     total: Array  # [] the return: rewards without discount, and without a constraint's price
     violations: Array | None = None  # [] of the constraint
     sent: Sent | None = None  # actions that arrive late
-    true_obs: Array | None = None  # [o] the observation before noise
+    true_obs: Array | None = None  # the whole observation, without noise
     sensing: Array | None = None  # data of the key of the next noise of the sensors
     disturbing: Array | None = None  # data of the key of the next noise of an action
 

@@ -17,7 +17,6 @@ from tiny import TINY, call, call_train, only_line, summary_of
 from hybrid_rl import evaluate, render
 from hybrid_rl.analysis import film
 from hybrid_rl.cli import command
-from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.errors import SourceOf, UsageError
 from hybrid_rl.outside.actor import Actor
@@ -31,7 +30,6 @@ ROOT = Path(__file__).resolve().parents[1]
 PAGE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 HOWTO = (ROOT / "docs" / "howto.md").read_text(encoding="utf-8")
 DEPLOY = (ROOT / "docs" / "howto_deploy.md").read_text(encoding="utf-8")
-WHICH = (ROOT / "docs" / "which_method.md").read_text(encoding="utf-8")
 
 
 def section(title: str, page: str = PAGE) -> str:
@@ -232,17 +230,6 @@ def test_a_gymnasium_environment_trains_as_it_is(conf, tmp_path, monkeypatch):
     )
     assert (composed.task, composed.episode.steps) == ("reach_Reach", 4)
     assert evaluate.evaluate(load(run), episodes=2)["return"].shape == (1, 2)
-
-
-def test_a_stack_of_observations_is_one_class(conf, tmp_path):
-    """Each is that of the last three decisions of Gymnasium's pendulum."""
-    (code,) = re.findall(r"```python\n(.*?)```", WHICH, re.S)
-    (tmp_path / "stacked.py").write_text(code)
-    copies = External(make="stacked:Stacked").copies([0], 200)
-    first, after = copies.reset()[0], copies.step(np.zeros((1, 1))).obs[0]
-    assert first.shape == after.shape == (9,)
-    np.testing.assert_array_equal(after[:6], first[3:])
-    assert (after[6:] != after[3:6]).any()
 
 
 def test_a_robot_is_one_class(conf, tmp_path):

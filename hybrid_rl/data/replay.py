@@ -1,8 +1,8 @@
 """Replay memory: a ring of packed rows, sampled uniformly.
 
 A transition is one row of float32 [width]; its next executed action is in the row of the same
-environment one decision later, and is not stored twice. The memory starts with the
-demonstrations, if there are any.
+environment one decision later, and is not stored twice; nor is its history (`core.history`), which
+is in the rows before. The memory starts with the demonstrations, if there are any.
 """
 
 from dataclasses import replace
@@ -12,6 +12,7 @@ import jax.numpy as jnp
 from flax import struct
 from jax import Array
 
+from hybrid_rl.core import history
 from hybrid_rl.fields import Count, FieldError, part
 from hybrid_rl.protocols import Demonstrations, Goal
 from hybrid_rl.types import Batch, Spec, Transition
@@ -92,10 +93,12 @@ class Replay:
         late, after = jnp.full(len(obs), jnp.nan), jnp.full_like(obs, jnp.nan)
         return self.add(memory, Transition(obs, action, late, late, late, after))
 
-    def newest(self, memory: Memory, spec: Spec) -> Transition:
-        """The last decision [E, ...] of every environment; flags are 0 or 1."""
+    def newest(self, memory: Memory, spec: Spec, k: int = 1) -> Transition:
+        """The last decision [E, ...] of every environment; flags are 0 or 1; k: as of `sample`."""
         slot = (memory.count - 1) % memory.rows.shape[0]
-        return unpack(jax.lax.dynamic_index_in_dim(memory.rows, slot, keepdims=False), spec)
+        new = unpack(jax.lax.dynamic_index_in_dim(memory.rows, slot, keepdims=False), spec)
+        env = jnp.arange(memory.rows.shape[1])
+        return _recalled(new, memory, spec, jnp.full_like(env, memory.count - 1), env, k)
 
     def interrupted(self, memory: Memory, spec: Spec) -> Memory:
         """The memory with its newest decisions marked as truncated, unless they are terminal.
@@ -126,10 +129,10 @@ class Replay:
         rows = memory.rows.at[..., at].set(jnp.where(filled, reward, kept.reward))
         return memory.replace(rows=rows)
 
-    def sample(self, memory: Memory, spec: Spec, batch_size: int, key: Array) -> Batch:
+    def sample(self, memory: Memory, spec: Spec, batch_size: int, key: Array, k: int = 1) -> Batch:
         """`batch_size` transitions, uniform among those whose successor is in the memory.
 
-        The key is consumed.
+        k: observations in the history that stands for an observation. The key is consumed.
         """
         length, num_envs, width = memory.rows.shape
         filled = jnp.minimum(memory.count, length)
@@ -142,7 +145,8 @@ class Replay:
         row = flat[(time % length) * num_envs + env]
         later = flat[((time + 1) % length) * num_envs + env]
         action = slice(spec.obs, spec.obs + spec.act)
-        return Batch(*unpack(row, spec), next_action=later[:, action])
+        now = _recalled(unpack(row, spec), memory, spec, time, env, k)
+        return Batch(*now, next_action=later[:, action])
 
 
 def unpack(rows: Array, spec: Spec) -> Transition:
@@ -151,6 +155,29 @@ def unpack(rows: Array, spec: Spec) -> Transition:
     reward, terminated, truncated = (rows[..., o + m + i] for i in range(3))
     obs, action, after = rows[..., :o], rows[..., o : o + m], rows[..., o + m + 3 :]
     return Transition(obs, action, reward, terminated, truncated, after)
+
+
+def _recalled(
+    now: Transition, memory: Memory, spec: Spec, time: Array, env: Array, k: int
+) -> Transition:
+    """Transitions [B] with histories of k observations; time, env: where they are [B].
+
+    An episode that is older than the memory begins with the oldest row.
+    """
+    if k == 1:
+        return now
+    length, oldest = len(memory.rows), memory.count - jnp.minimum(memory.count, len(memory.rows))
+    parts, later, begun = [now.obs], now.obs, jnp.ones((len(time), 1), bool)
+    for j in range(1, k):
+        before = unpack(memory.rows[(time - j) % length, env], spec)
+        ended = before.terminated + before.truncated > 0
+        begun = begun & ((time - j >= oldest) & ~ended)[:, None]
+        rate, later = (later - before.obs) / spec.dt, before.obs
+        parts += [jnp.where(begun, each, 0) for each in (rate, before.action)]
+    s = jnp.concatenate(parts, axis=1)
+    shifted = jax.vmap(history.shifted, (0, 0, 0, None))
+    after = shifted(s, now.action, now.next_obs, spec.dt)
+    return now._replace(obs=s, next_obs=after)
 
 
 def as_batch(new: Transition) -> Batch:

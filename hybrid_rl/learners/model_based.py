@@ -46,7 +46,8 @@ class ModelBased(SoftActorCritic):
     steps: Natural = 5  # H; 0: the policy maximises the critic at the start states, as in SAC
     value_steps: int | None = None  # of the H decisions, at whose states the critic learns; None: H
     branch_steps: Natural = 20  # longest branch [decisions]; 0: starts at the states of the batch
-    branch_margin: Positive | None = None  # ranges beyond real states where one ends; None: none
+    branch_margin: Positive | None = None  # ranges beyond real states where one ends; None: none,
+    # or 3 with a history, in whose rates a model that has learned little diverges
     branch_memory: int = 25_600  # imagined transitions that are kept; 0: drawn for each update
     alpha: Positive = 0.1  # initial temperature
     discount: Discount = 0.995

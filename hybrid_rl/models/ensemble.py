@@ -66,7 +66,8 @@ class Ensemble:
     def predictions(self, params: dict[str, Any], x: Array, u: Array) -> tuple[Array, Array, Array]:
         """`step` [n], `disagreement` [n], with a finite gradient, and `each` [members, n]."""
         each = self.each(params, x, u)
-        variance = each.var(0) / params["change"].scale ** 2
+        newest = each[:, : params["change"].mean.size]
+        variance = newest.var(0) / params["change"].scale ** 2
         return each.mean(0), jnp.sqrt(variance + 1e-12), each
 
     def disagreement(self, params: dict[str, Any], x: Array, u: Array) -> Array:

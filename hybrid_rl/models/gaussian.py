@@ -19,7 +19,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import statistics
+from hybrid_rl.core import history, statistics
 from hybrid_rl.core.lifting import check_coordinates
 from hybrid_rl.fields import FILLED, part
 from hybrid_rl.networks import MLP, Activation, LayerNorm, Widths, apply
@@ -48,22 +48,26 @@ class Gaussian:
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Initial weights and statistics. The key is consumed."""
         check_coordinates("model.inputs", self.inputs, spec.obs)
-        net = self._net(spec.obs)
-        size, log_std = len(self._inputs(jnp.zeros(spec.obs))), jnp.zeros(spec.obs)
+        new = spec.newest or spec.obs
+        net, size, log_std = self._net(new), len(self._inputs(jnp.zeros(spec.obs))), jnp.zeros(new)
         if self.state_noise:
             log_std = net.init(jax.random.fold_in(key, 1), jnp.zeros(size))
-        return {
+        params = {
             "weights": {"net": net.init(key, jnp.zeros(size + spec.act)), "log_std": log_std},
             "state": statistics.init(spec.obs),
-            "change": statistics.init(spec.obs),
+            "change": statistics.init(new),
         }
+        return params if new == spec.obs else {**params, "dt": jnp.float32(spec.dt)}
 
     def observe(self, params: dict[str, Any], obs: Array, next_obs: Array) -> dict[str, Any]:
         """Parameters with statistics updated by observations [B, o] and their successors."""
         if not self.normalise:
             return params
         state = statistics.update(params["state"], obs)
-        change = statistics.update(params["change"], next_obs - obs, state.magnitude)
+        before = self._onward(params, obs)
+        new = before.shape[1]
+        change = next_obs[:, :new] - before
+        change = statistics.update(params["change"], change, state.magnitude[:new])
         return {**params, "state": state, "change": change}
 
     def lift(self, params: dict[str, Any], obs: Array) -> Array:
@@ -71,37 +75,52 @@ class Gaussian:
         return obs
 
     def change(self, params: dict[str, Any], x: Array, u: Array) -> Array:
-        """Predicted change [n] of x [n] under u [m], in running standard deviations."""
+        """Predicted change [n] of x [n] under u [m], in running standard deviations.
+
+        After a history it is what the next observation is beyond o + v dt.
+        """
         inputs = jnp.concatenate([self._inputs(statistics.normalise(params["state"], x)), u])
-        out = apply(self._net(x.shape[-1]), params["weights"]["net"], inputs)
+        new = params["change"].mean.size
+        out = apply(self._net(new), params["weights"]["net"], inputs)
         if self.predict == "change":
             return out
-        after = statistics.denormalise(params["state"], out)
-        return statistics.normalise(params["change"], after - x)
+        after = statistics.denormalise(statistics.leading(params["state"], new), out)
+        return statistics.normalise(params["change"], after - self._onward(params, x))
 
     def std(self, params: dict[str, Any], x: Array) -> Array:
         """s [n] of the change at x [n], in running standard deviations."""
         log_std = params["weights"]["log_std"]
         if self.state_noise:
             inputs = self._inputs(statistics.normalise(params["state"], x))
-            log_std = apply(self._net(x.shape[-1]), log_std, inputs)
+            log_std = apply(self._net(params["change"].mean.size), log_std, inputs)
         std = jnp.exp(jnp.clip(log_std, self.log_std_min, self.log_std_max))
         if self.predict == "change":
             return std
-        return std * params["state"].scale / params["change"].scale
+        return std * params["state"].scale[: std.size] / params["change"].scale
 
     def step(self, params: dict[str, Any], x: Array, u: Array) -> Array:
         """Mean of the next planning state [n]."""
-        return x + statistics.denormalise(params["change"], self.change(params, x, u))
+        return self._after(params, x, u, self.change(params, x, u))
 
     def draw(self, params: dict[str, Any], x: Array, u: Array, noise: Array, key: Array) -> Array:
         """Next planning states [B, n] for noise [B, n] ~ N(0, I); the key is not used."""
 
         def one(x: Array, u: Array, noise: Array) -> Array:
-            change = self.change(params, x, u) + self.std(params, x) * noise
-            return x + statistics.denormalise(params["change"], change)
+            change = self.change(params, x, u)
+            change = change + self.std(params, x) * noise[: change.size]
+            return self._after(params, x, u, change)
 
         return jax.vmap(one)(x, u, noise)
+
+    def _after(self, params: dict[str, Any], x: Array, u: Array, change: Array) -> Array:
+        """The state [n] after x [n] by a `change`; what is older in a history only shifts."""
+        new = self._onward(params, x) + statistics.denormalise(params["change"], change)
+        return history.shifted(x, u, new, params["dt"]) if "dt" in params else new
+
+    def _onward(self, params: dict[str, Any], x: Array) -> Array:
+        """The next observation [...] without a change, at x [..., n]."""
+        new = params["change"].mean.size
+        return history.onward(x, new, params["dt"]) if "dt" in params else x
 
     def _inputs(self, x: Array) -> Array:
         return x if self.inputs is None else x[jnp.array(self.inputs)]
@@ -117,7 +136,8 @@ class Gaussian:
     def _each(self, params: dict[str, Any], obs: Array, action: Array, next_obs: Array) -> Array:
         def one(x: Array, u: Array, next_x: Array) -> Array:
             std = self.std(params, x)
-            target = statistics.normalise(params["change"], next_x - x)
+            change = next_x[: std.size] - self._onward(params, x)
+            target = statistics.normalise(params["change"], change)
             error = (target - self.change(params, x, u)) / std
             return jnp.mean(0.5 * error**2 + jnp.log(std) + 0.5 * jnp.log(2 * jnp.pi))
 

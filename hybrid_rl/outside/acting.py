@@ -15,6 +15,7 @@ from hybrid_rl.errors import UsageError, one_line
 from hybrid_rl.protocols import Controller
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.ahead import AheadState
+from hybrid_rl.training.history import HistoryState, informed
 from hybrid_rl.types import Params, Spec
 
 NONE: Mapping[str, Array] = MappingProxyType({})
@@ -84,6 +85,8 @@ class Exploring:
         self._size, self._random_steps = agent.spec.act, random_steps
         self._random = np.random.default_rng(np.asarray(jax.random.key_data(key)))
         self._acting = Acting(agent.spec, agent.controller, key[None, None])
+        many = jax.vmap(jax.vmap(informed, (0, None, None)), (0, None, None))
+        self._informed = jax.jit(many)
         self.like = jax.eval_shape(lambda: agent.params(agent.init(key)))  # of the parameters
         self.take(jax.tree.map(lambda leaf: np.zeros(leaf.shape, leaf.dtype), self.like))
         self._acting.compile(self._with(0))
@@ -101,11 +104,9 @@ class Exploring:
 
     def informed(self, sent: np.ndarray, lag: float) -> None:
         """What was sent, [K + 1, m] or more, the newest last; how late it acts [decisions]."""
-        control = self._acting.control
-        if isinstance(control, AheadState):
-            sent = sent[-control.sent.shape[2] :]
-            each, late = np.array(sent, np.float32), np.full((1, 1), lag, np.float32)
-            self._acting.control = control._replace(sent=each[None, None], lag=late)
+        given = self._acting.control, sent.astype(np.float32), np.float32(lag)
+        if isinstance(given[0], AheadState | HistoryState):
+            self._acting.control = self._informed(*given)
 
     def __call__(self, obs: np.ndarray, decisions: int) -> np.ndarray:
         """The action [m] at `obs` [o], after so many decisions of the run."""

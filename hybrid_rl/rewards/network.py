@@ -79,7 +79,8 @@ class RewardNetwork:
         """
         rewards, logits = self._each(params.reward, x, u, after)
         if self._known:
-            return rewards.mean(), jnp.where(self.rule.ended(after), CERTAIN, -CERTAIN)
+            ended = self.rule.ended(after[: self.rule.spec.obs])
+            return rewards.mean(), jnp.where(ended, CERTAIN, -CERTAIN)
         return rewards.mean(), logits.mean() if self.ends else -jnp.inf
 
     def _each(

@@ -46,9 +46,9 @@ from hybrid_rl.settings.complete import LACKING, complete, refusal, select
 from hybrid_rl.settings.compose import explain
 from hybrid_rl.settings.groups import CONF, search_path
 from hybrid_rl.settings.words import forced, raw_values, value_of
-from hybrid_rl.training.ahead import acting_ahead
 from hybrid_rl.training.contract import check_acting
 from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.history import acting as acting_in
 from hybrid_rl.training.imagined import Imagination
 from hybrid_rl.training.loop import compile_lowered
 from hybrid_rl.types import Params
@@ -85,7 +85,7 @@ def apply_changes(
     rest = {key: value for key, value in changes.items() if key not in goal}
     if rest:
         assert trained.config is not None
-        episode, acting = acting_ahead(disturbed(trained.config, rest), trained.controllers)
+        episode, acting = acting_in(disturbed(trained.config, rest), trained.controllers)
         trained = replace(trained, episode=episode, controllers=acting)
     return trained, {**goal, **rest}
 

@@ -36,14 +36,14 @@ from hybrid_rl.settings.values import (
     SECTIONS,
     check,
     random_decisions,
-    set_length,
+    set_defaults,
     time_limit,
     whole,
 )
 from hybrid_rl.settings.words import forced, name, of_job, plain, raw_values, typed_values
 from hybrid_rl.training.agent import Agent
-from hybrid_rl.training.ahead import acting_ahead
 from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.history import acting as acting_in
 from hybrid_rl.training.imagined import Imagination
 
 READ = (  # the keys that a run reads, and with them all keys that they refer to
@@ -52,6 +52,7 @@ READ = (  # the keys that a run reads, and with them all keys that they refer to
     *("precision", "logger", "run", "freeze"),
 )
 register(CONF)  # before Hydra composes anything
+SENSED = "hybrid_rl.training.wrappers.Sensed"
 COMPOSING = Lock()  # Hydra composes in one thread at a time
 
 
@@ -165,7 +166,8 @@ def built(config: DictConfig) -> Run:
     whole("replay.capacity", config.replay.capacity)
     with _usage(config):
         parts = _on_this_machine(config)
-        set_length(parts.learners, config.total_steps)
+        history = parts.episode.get("history", 1)
+        set_defaults(parts.learners, config.total_steps, history)
         episode, controllers = _acting(parts)
         agent = Agent(
             episode,
@@ -186,7 +188,7 @@ def _acting(parts: DictConfig) -> tuple[Episode, dict[str, Controller]]:
     """The episodes, and the controllers as they act in training."""
     episode = _episode(parts)  # first, as controllers may hold their reward, too
     each = ((k, _instantiate(v, f"controllers.{k}")) for k, v in parts.controllers.items())
-    return acting_ahead(episode, dict(each), PENDING * isinstance(episode.env, Robot))
+    return acting_in(episode, dict(each), PENDING * isinstance(episode.env, Robot))
 
 
 def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller], Imagination | None]:
@@ -234,7 +236,10 @@ def physics(config: DictConfig) -> str | None:
 
 
 def _on_this_machine(config: DictConfig) -> DictConfig:
-    """The sections, in which every copy of the world has its physics resolved."""
+    """The sections, in which every copy of the world has its physics resolved.
+
+    Parts that read observations get a world of what is observed, which lacks what needs all of it.
+    """
     sections = [key for key in (*SECTIONS, *PAID, "imagine") if key in config]
     parts = OmegaConf.masked_copy(config, sections)
     chosen = physics(config)
@@ -246,8 +251,18 @@ def _on_this_machine(config: DictConfig) -> DictConfig:
             elif isinstance(value, (DictConfig, ListConfig)):
                 visit(value)
 
+    def see(node: Any) -> None:
+        for key, value in node.items() if isinstance(node, DictConfig) else enumerate(node):
+            if value == parts.env and key != "env":  # that of an Episode, which observes by itself
+                node[key] = {"_target_": SENSED, "env": value, "observe": config.episode.observe}
+            elif isinstance(value, (DictConfig, ListConfig)):
+                see(value)
+
     if chosen is not None:
         visit(parts)
+    if config.episode.get("observe") is not None:
+        for name in ("controllers", "learners", "imagine"):
+            see(parts.get(name) or {})
     return parts
 
 

@@ -9,15 +9,16 @@ import jax.numpy as jnp
 from flax import struct
 from jax import Array
 
+from hybrid_rl.core import history
 from hybrid_rl.core.batching import repeat, where
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
 from hybrid_rl.data.replay import Memory, Replay, as_batch
 from hybrid_rl.fields import LARGEST, Count, Natural, part
 from hybrid_rl.protocols import Controller, Learner, Model
 from hybrid_rl.training import contract
-from hybrid_rl.training.ahead import acted, remembered
 from hybrid_rl.training.contract import needs_world
 from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.history import acted, remembered
 from hybrid_rl.training.keys import Keys
 from hybrid_rl.training.metrics import masked_mean, outcome
 from hybrid_rl.training.rollout import act
@@ -78,6 +79,11 @@ class Agent:
     def spec(self) -> Spec:
         """The environment's sizes and time step."""
         return self.episode.spec
+
+    @property
+    def seen(self) -> Spec:
+        """The sizes for what learns and acts, which sees a history of observations."""
+        return history.seen(self.spec, self.episode.history)
 
     def check(self, decisions: int, controllers: Iterable[Controller] = ()) -> None:
         """Raise ValueError if a part refuses a run of so many decisions; no device is used.
@@ -148,9 +154,9 @@ class Agent:
     def _batch(self, memory: Memory, learner: Learner, params: Params, key: Array) -> Batch:
         """The batch of one update. The key is consumed by that of a `uniform` learner."""
         if learner.data == "latest":
-            return as_batch(self.replay.newest(memory, self.spec))
+            return as_batch(self.replay.newest(memory, self.spec, self.episode.history))
         size = learner.batches * learner.batch_size
-        batch = self.replay.sample(memory, self.spec, size, key)
+        batch = self.replay.sample(memory, self.spec, size, key, self.episode.history)
         return lifted_batch(self._lifting(learner), params.model, batch)
 
     def _lifting(self, learner: Learner) -> Model | None:
@@ -164,7 +170,7 @@ class Agent:
 
     def _first(self, learner: Learner, key: Array) -> Any:
         """The initial state of a learner. The key is consumed."""
-        return learner.init(key, lifted_spec(self._lifting(learner), self.spec))
+        return learner.init(key, lifted_spec(self._lifting(learner), self.seen))
 
     def step(self, state: AgentState, step: Array) -> tuple[AgentState, dict[str, Array]]:
         """One decision in every environment, `step` [] decisions into the run; metrics name -> [].
@@ -196,7 +202,7 @@ class Agent:
             plan = trace_once(plan)
             shapes = jax.eval_shape(plan)
             draw = jax.random.uniform(keys.at_random, shapes[0].shape, minval=-1, maxval=1)
-            control = jax.vmap(remembered)(state.control, draw)
+            control = jax.vmap(remembered)(state.control, state.env.obs, draw)
             first = draw, control, jax.tree.map(jnp.zeros_like, shapes[2])
             u, control, metrics = jax.lax.cond(step < self.random_steps, lambda: first, plan)
         else:

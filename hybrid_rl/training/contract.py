@@ -11,7 +11,7 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 
-from hybrid_rl.core import lifting
+from hybrid_rl.core import history, lifting
 from hybrid_rl.data.trained import SavedPolicy
 from hybrid_rl.errors import SourceOf
 from hybrid_rl.protocols import Controller, Features, Learner, Model, Objective, UniformLearner
@@ -65,13 +65,13 @@ def check(agent: Any, controllers: Iterable[Any]) -> None:
     """
     controllers = list({id(each): each for each in controllers}.values())  # full may be policy
     whole = [*controllers, *agent.learners.values()]
-    for of in [*_contracts(whole, agent.spec)]:
+    for of in [*_contracts(whole, agent.seen)]:
         of.check_members()
         if FIRST & {*of.protocol.__mro__} and of_user(of.part):
             of.check()
     learned, learning = {}, []
     for learner in agent.learners.values():
-        own = lifting.lifted_spec(agent._lifting(learner), agent.spec)
+        own = lifting.lifted_spec(agent._lifting(learner), agent.seen)
         of = Contract(learner, _kind(learner), own)
         of.check()
         given = of.values["owned"]
@@ -82,7 +82,7 @@ def check(agent: Any, controllers: Iterable[Any]) -> None:
         learning.append(of)
     owned = {field: learner for learner in agent.learners.values() for field in learner.owns}
     model = getattr(owned.get("model"), "model", None)
-    check_parameters(whole, learned, lifting.lifted_spec(model, agent.spec))
+    check_parameters(whole, learned, lifting.lifted_spec(model, agent.seen))
     if not has_users(whole):
         return
     params = Params(**learned)._replace(decisions=jax.ShapeDtypeStruct((), jnp.int32))
@@ -103,15 +103,17 @@ def check_acting(
     """Raise PartError unless parts of the user's fit their protocols, and the controllers act."""
     whole, env = [*whole], jax.eval_shape(episode.reset, jax.random.key(0))
     params = params._replace(world=env)
+    seen = history.seen(episode.spec, episode.history)
+    obs = jax.ShapeDtypeStruct((seen.obs,), env.obs.dtype)
     model = next((part for _, name, _, part in parts(whole) if name == "model" and part), None)
-    spec = lifting.lifted_spec(model if not needs_world(model) else None, episode.spec)
+    spec = lifting.lifted_spec(None if needs_world(model) else model, seen)
     for of in _contracts(whole, spec):
         if of_user(of.part) and not (FIRST | {Learner}) & {*of.protocol.__mro__}:
             own = getattr(of.owner, "model", None) or model
             of.values["Params"] = params
             of.values["x"] = jax.eval_shape(
-                lambda p, own=own: env.obs if own is None else lifting.start(own, p, env.obs),
-                params,
+                lambda p, obs, own=own: obs if own is None else lifting.start(own, p, obs),
+                *(params, obs),
             )
             of.check()
     for controller in controllers:

@@ -1,6 +1,7 @@
 """Episodes of an environment: time limit, action repeat, resets, and disturbances on request.
 
-A controller sees o + sensor_noise N(0, I); environment, reward and constraint see o. Its action u
+A controller sees o + sensor_noise N(0, I), or some entries of it, and with `history` how they came
+about (`core/history.py`); environment, reward and constraint see o. Its action u
 arrives `delay` + `jitter` U(0, 1) seconds later, as clip(u + action_noise N(0, I)), or is lost, and
 never overtakes another. If the method knows of that, it is sent so much later that it acts whole
 decisions after its observation, on average (`wrappers.whole`). What acted in a decision is
@@ -22,7 +23,7 @@ from hybrid_rl.core.batching import when_any, where
 from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.envs.mujoco.randomised import Ranges
 from hybrid_rl.errors import UsageError
-from hybrid_rl.fields import Count, FieldError, Fraction, NotNegative, part
+from hybrid_rl.fields import Count, FieldError, Fraction, Natural, NotNegative, part
 from hybrid_rl.protocols import Constraint, Env, Goal
 from hybrid_rl.protocols.contract import Contract
 from hybrid_rl.training.wrappers import (
@@ -69,6 +70,8 @@ class Episode:
     longest: NotNegative = 0.0  # [s] longest lag to be ready for, where it is swept
     sensor_noise: NotNegative | tuple[NotNegative, ...] = 0.0  # std of the observation, or [o]
     action_noise: NotNegative = 0.0  # [u] std of what is added to an action when it arrives
+    observe: Count | tuple[Natural, ...] | None = None  # the first entries, or these; None: all
+    history: Count = 1  # observations that an agent sees at a time
     randomise: Ranges | None = None  # of each episode's body; also as {NAME: [low, high]}
     reward: Goal | None = None  # what it pays; None: the environment's own reward
     constraint: Constraint | None = None  # what decisions must not violate
@@ -91,6 +94,7 @@ class Episode:
         first = jax.eval_shape(self.env.reset, jax.random.key(0)) if self.randomise else None
         if first is not None and not isinstance(first.data, PhysicsState):
             raise FieldError(self, "randomise", "only robots in MuJoCo have other bodies")
+        _ = self.world
 
     @property
     def std(self) -> tuple[float, ...]:
@@ -137,7 +141,8 @@ class Episode:
         if self.late:
             delay = self.delay + self._held(env.spec.dt)
             env = Late(env, delay, self.jitter, self.loss, self.longest)
-        return Sensed(env, self.std) if any(self.std) else env
+        seen = any(self.std) or self.observe is not None
+        return Sensed(env, self.std, self.observe) if seen else env
 
     @property
     def spec(self) -> Spec:
@@ -161,7 +166,7 @@ class Episode:
     def relabels(self) -> bool:
         """Whether `reward_of` gives what it pays for decisions as they were, without noise."""
         known = self.reward is not None or hasattr(self.env, "reward_of")
-        return known and self.action_repeat == 1
+        return known and self.action_repeat == 1 and self.observe is None
 
     @property
     def own_goal(self) -> Goal | None:

@@ -6,6 +6,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.core import history
 from hybrid_rl.core.batching import where
 from hybrid_rl.core.branches import Branches
 from hybrid_rl.core.lifting import lifted_spec
@@ -59,9 +60,10 @@ class Imagination:
         """
         resetting, walking, first, updating = jax.random.split(key, 4)
         obs = jax.vmap(episode.reset)(jax.random.split(resetting, self.starts)).obs
-        first_x = jax.vmap(self.learner.model.lift, (None, 0))(params.model, obs)
+        seen, model = history.seen(episode.spec, episode.history), self.learner.model
+        first_x = jax.vmap(lambda o: model.lift(params.model, history.first(o, seen.obs)))(obs)
         states = self.walked(params, first_x, walking)
-        spec, size = lifted_spec(self.learner.model, episode.spec), self.learner.batch_size
+        spec, size = lifted_spec(model, seen), self.learner.batch_size
         begun = self.learner.having(self.learner.init(first, spec), params.policy)
 
         def update(state: Any, at: tuple[Array, Array]) -> tuple[Any, None]:

@@ -16,10 +16,12 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core.batching import where
+from hybrid_rl.core.lifting import check_coordinates, select
 from hybrid_rl.envs import sensor_noise
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.envs.mujoco.randomised import Ranges
+from hybrid_rl.fields import Count, Natural, part
 from hybrid_rl.protocols import Constraint, Env, Goal
 from hybrid_rl.types import Clock, EnvState, PyTree, Sent, Spec
 
@@ -250,21 +252,36 @@ def _held(data: PyTree, steps: Array | int) -> PyTree:
     return jax.tree.map(one, data, is_leaf=_simulated)
 
 
-@dataclass(frozen=True)
+@part
 class Sensed(Around):
-    """A controller sees the observation with Gaussian noise; the environment does not."""
+    """A controller sees entries of the observation, with Gaussian noise; the environment, all."""
 
-    std: tuple[float, ...]  # one of all entries, or one each
+    std: tuple[float, ...] = (0.0,)  # one of all entries, or one each
+    observe: Count | tuple[Natural, ...] | None = None  # the first entries, or these; None: all
+
+    def __post_init__(self) -> None:
+        check_coordinates("episode.observe", self._entries, self.env.spec.obs)
+
+    @property
+    def _entries(self) -> tuple[int, ...] | None:
+        return tuple(range(self.observe)) if isinstance(self.observe, int) else self.observe
+
+    @property
+    def spec(self) -> Spec:
+        """Its sizes, and the time between decisions."""
+        size = self.env.spec.obs if self._entries is None else len(self._entries)
+        return self.env.spec._replace(obs=size)
 
     def reset(self, key: Array) -> EnvState:
-        """The first state, seen with noise."""
+        """The first state, as it is seen."""
         return self._seen(super().reset(key), jax.random.fold_in(key, 5))
 
     def step(self, state: EnvState, action: Array) -> EnvState:
-        """The state one decision later, seen with noise."""
+        """The state one decision later, as it is seen."""
         key = jax.random.wrap_key_data(state.clock.sensing)
         return self._seen(super().step(state.replace(obs=state.clock.true_obs), action), key)
 
     def _seen(self, state: EnvState, key: Array) -> EnvState:
         obs, later = sensor_noise.added(state.obs, self.std, key)
-        return state.replace(obs=obs, clock=state.clock._replace(true_obs=state.obs, sensing=later))
+        clock = state.clock._replace(true_obs=state.obs, sensing=later)
+        return state.replace(obs=select(obs, self._entries), clock=clock)

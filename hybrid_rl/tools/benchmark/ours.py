@@ -132,7 +132,7 @@ def decisions(name: str, agent: Agent, learners: int, each: float = 1.0) -> Cont
 
 def updates(name: str, agent: Agent, which: str, learners: int) -> Contestant:
     """Gradient steps of one of the agent's learners, for many agents side by side."""
-    learner, o, m, repeats = agent.learners[which], agent.spec.obs, agent.spec.act, 20
+    learner, o, m, repeats = agent.learners[which], agent.seen.obs, agent.spec.act, 20
     state = Loop(agent, tuple(range(learners)), 1).init()
     batch = recalled(learners, learner.batches * learner.batch_size, o, m)
     keys = jax.random.split(jax.random.key(0), learners)

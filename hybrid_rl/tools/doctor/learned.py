@@ -46,7 +46,9 @@ def forecast(run: Evidence) -> str | None:
     learner: Any = run.run.agent.learners.get("model")
     if learner is None or run.params is None or run.made is None:
         return None
-    if not lifting.is_identity(learner.model, run.params.model, run.run.agent.spec.obs):
+    agent = run.run.agent
+    own = lifting.is_identity(learner.model, run.params.model, agent.seen.obs)
+    if not own or agent.episode.history > 1:
         return None
     where = run.at(0)
     own = tuple(

@@ -54,7 +54,7 @@ class Subject:
 
     def sees_world(self, mode: str) -> bool:
         """Whether who acts in `mode` gets the state of the world, and not only observations."""
-        return mode not in self.blind
+        return mode not in self.blind or self.episode.observe is not None
 
     @cached_property
     def goals(self) -> list[Slider]:
