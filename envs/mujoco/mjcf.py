@@ -3,7 +3,7 @@
     sawyer_torque.xml                                              a file
     sawyer_torque.xml?joint.j0.damping=10.0?geom.rod.mass=0.55     a file with other values
     hopper.xml?mass=1.5?motor.2=0.3                                a file with another body
-    <mujoco> ... </mujoco>                                         MJCF text is its own name
+    <mujoco> ... </mujoco>?mass=1.5                                MJCF text is its own name
 
 Source: the MJCF reference of MuJoCo, "XML Reference".
 """
@@ -78,11 +78,11 @@ def changed(asset: str, values: Mapping[str, float]) -> str:
 
 def spec(asset: str) -> mujoco.MjSpec:
     """A new description of `asset`, which may be modified; without changes of the whole model."""
-    if asset.lstrip().startswith("<"):
-        return mujoco.MjSpec.from_string(asset)
     file, values = _split(asset)
     try:
-        result = mujoco.MjSpec.from_file(str(path(file)))
+        is_text = file.lstrip().startswith("<")
+        read = mujoco.MjSpec.from_string if is_text else mujoco.MjSpec.from_file
+        result = read(file if is_text else str(path(file)))
     except ValueError as error:
         line = str(error)
         raise ValueError(line if file in line else f"{file}: {line}") from error
@@ -94,7 +94,9 @@ def spec(asset: str) -> mujoco.MjSpec:
 
 def _split(asset: str) -> tuple[str, dict[str, float]]:
     """The file that `asset` names, and its other values."""
-    file, *values = asset.split("?")
+    text, end, rest = asset.rpartition("</mujoco>")  # MJCF text may have question marks
+    file, *values = rest.split("?")
+    file = text + end + file
     pairs = (each.partition("=") for each in values)
     return file, {key: float(value) for key, _, value in pairs}
 
@@ -116,8 +118,7 @@ def load(asset: str) -> mujoco.MjModel:
     except ValueError as error:
         raise ValueError(f"{asset}: {error}") from error
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
-    values = {} if asset.lstrip().startswith("<") else _split(asset)[1]
-    if whole := {key: value for key, value in values.items() if _whole(key)}:
+    if whole := {key: value for key, value in _split(asset)[1].items() if _whole(key)}:
         _change(model, whole)
     return model
 

@@ -1,0 +1,153 @@
+"""Legs: a robot of any MJCF file walks by command, upright and smoothly.
+
+    r = max(0, e^(-4 |v_xy - c_xy|^2) + e^(-4 (w_z - c_z)^2) / 2 + e^(-|q - q*|^2) / 2 - v_z^2 / 2
+        - |w_xy|^2 / 20 - 5 |g_xy|^2 - |a - a'|^2 / 100 - P / (10 m g)),    P = sum_i |tau_i q_i'|
+
+c: the command, forwards, to the left [m/s] and to turn [rad/s]; v, w: velocity and angular velocity
+of the base, in its frame; g: the direction of gravity there; q, q*: angles of the motors' joints
+now and at home; a: action, the target of each servo, (q - q*) / 0.5 rad; a': the one before; tau:
+torques of the servos [N m]; m g: the robot's weight. o = (v, w, g, q - q*, q' / 10, a, c) [12 + 3m].
+
+Each entry of a command is uniform within `command`, or with probability 1/2 zero; a new one comes
+after 5 s, on average. Start: home, in any direction, pushed at up to 0.5 m/s and rad/s; a decision
+is 0.02 s. An episode terminates when the base tilts by more than 60 degrees, or sinks below half of
+its height at home.
+
+Source: the reward's terms are those that MuJoCo Playground's joystick tasks share (Zakka et al.
+2025); power over weight instead of torques, so that it is of one size for all robots.
+"""
+
+from functools import cache
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.envs.mujoco.body import Body
+from hybrid_rl.envs.mujoco.kinematics import from_axis_angle, inverse, quat_multiply, rotate
+from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
+from hybrid_rl.envs.mujoco.simplified import TIMESTEP, simplified
+from hybrid_rl.fields import NotNegative, part
+from hybrid_rl.types import EnvState, Spec
+
+STEPS = 5  # physics steps per decision
+DT = STEPS * TIMESTEP  # [s] of a decision
+OFFSET = 0.5  # [rad] of a servo's target from home at a = 1
+HOLD = 5.0  # [s] that a command lasts, on average
+SPEED = 0.1  # of joints, in the observation
+PUSH = 0.5  # [m/s, rad/s] largest of the base at the start
+
+
+class Servos(NamedTuple):
+    """The motors of a model: their joints, home, and torque clip(k (u - q), -t, t)."""
+
+    qpos: np.ndarray  # [m] addresses
+    qvel: np.ndarray  # [m]
+    home: np.ndarray  # [m] [rad]
+    stiffness: np.ndarray  # [m] [N m/rad]
+    most: np.ndarray  # [m] [N m]
+
+
+@cache
+def servos(asset: str) -> Servos:
+    """The servos of a simplified model."""
+    model = mjcf.load(asset)
+    joints, limited = model.actuator_trnid[:, 0], model.actuator_forcelimited.astype(bool)
+    most = np.where(limited, model.actuator_forcerange[:, 1], np.inf)
+    gains = model.actuator_gainprm[:, 0]
+    numbers = (model.key_ctrl[0], gains, most)
+    where = model.jnt_qposadr[joints], model.jnt_dofadr[joints]
+    return Servos(*where, *(each.astype(np.float32) for each in numbers))
+
+
+@part
+class Legs(Body):
+    """A robot with a free base and position servos; `physics` is native, mjx, warp or auto."""
+
+    robot: str = "go1.xml"  # a file of `assets`, or a path
+    command: tuple[NotNegative, ...] = (1.0, 0.5, 1.0)  # largest [m/s, m/s, rad/s]
+
+    @property
+    def spec(self) -> Spec:
+        """Observation size, action size and decision interval."""
+        m = mjcf.load(self._asset).nu
+        return Spec(obs=12 + 3 * m, act=m, dt=DT)
+
+    @property
+    def _asset(self) -> str:
+        return simplified(self.robot)
+
+    @property
+    def _body(self) -> Physics:
+        return self._physics(self._asset)
+
+    def reset(self, key: Array) -> EnvState:
+        """The robot at home, turned and pushed, with a command."""
+        turning, pushing, asking, later = jax.random.split(key, 4)
+        model = self._body.model
+        about = jax.random.uniform(turning, (), jnp.float32, -jnp.pi, jnp.pi)
+        qpos = jnp.asarray(model.key_qpos[0], jnp.float32)
+        turned = quat_multiply(from_axis_angle(jnp.eye(3)[2], about), qpos[3:7])
+        push = jax.random.uniform(pushing, (6,), jnp.float32, -PUSH, PUSH)
+        qvel = jnp.zeros(model.nv, jnp.float32).at[:6].set(push)
+        data = self._body.reset(qpos.at[3:7].set(turned), qvel)
+        info = {"command": self._asked(asking), "action": jnp.zeros(self.spec.act)}
+        info["key"] = jax.random.key_data(later)
+        return self._state(data, info)
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """The state after one decision. action: [m] in [-1, 1]."""
+        action = jnp.clip(action, -1.0, 1.0)
+        data = self._body.step(state.data, servos(self._asset).home + OFFSET * action, STEPS)
+        changing, asking, later = jax.random.split(jax.random.wrap_key_data(state.info["key"]), 3)
+        new = jax.random.bernoulli(changing, DT / HOLD)
+        command = jnp.where(new, self._asked(asking), state.info["command"])
+        info = {"command": command, "action": action, "key": jax.random.key_data(later)}
+        after = self._state(data, info)
+        low = data.qpos[2] < 0.5 * self._body.model.key_qpos[0, 2]
+        reward = self.reward_of(state.obs, action, after.obs)
+        metrics = {"speed_error": jnp.linalg.norm(after.obs[:2] - state.info["command"][:2])}
+        return after.replace(
+            reward=reward, terminated=self.ended(after.obs) | low, metrics=metrics
+        )
+
+    def ended(self, obs: Array) -> Array:
+        """Whether [] an episode terminates at obs [o], as far as it is seen: by its tilt."""
+        return ~(obs[8] < -0.5)
+
+    def reward_of(self, x: Array, u: Array, after: Array) -> Array:
+        """The reward [] of action u [m] at obs x [o], which led to `after` [o]."""
+        m, motors, model = len(u), servos(self._asset), self._body.model
+        command, before = x[-3:], x[-3 - m : -3]
+        v, w, g, away = after[:3], after[3:6], after[6:9], after[9 : 9 + m]
+        torque = jnp.clip(motors.stiffness * (OFFSET * u - away), -motors.most, motors.most)
+        power = jnp.abs(torque * after[9 + m : 9 + 2 * m] / SPEED).sum()
+        weight = float(model.body_mass.sum() * -model.opt.gravity[2])
+        follows = jnp.exp(-4 * ((v[:2] - command[:2]) ** 2).sum())
+        turns = jnp.exp(-4 * (w[2] - command[2]) ** 2)
+        cost = v[2] ** 2 / 2 + (w[:2] ** 2).sum() / 20 + 5 * (g[:2] ** 2).sum()
+        cost += ((u - before) ** 2).sum() / 100 + power / (10 * weight)
+        return jnp.maximum(follows + turns / 2 + jnp.exp(-(away**2).sum()) / 2 - cost, 0.0)
+
+    def quantities(self, obs: Array) -> dict[str, Array]:
+        """Velocity [m/s] and turning rate [rad/s] of the base, in its frame, at obs [o]."""
+        return {"speed": obs[0], "velocity": obs[:2], "turning": obs[5]}
+
+    def _asked(self, key: Array) -> Array:
+        """A random command [3]. The key is consumed."""
+        drawing, keeping = jax.random.split(key)
+        most = jnp.asarray(self.command, jnp.float32)
+        kept = jax.random.bernoulli(keeping, 0.5, (3,))
+        return kept * most * jax.random.uniform(drawing, (3,), jnp.float32, -1.0, 1.0)
+
+    def _state(self, data: PhysicsState, info: dict[str, Array]) -> EnvState:
+        """At the start of an episode."""
+        to_body, motors = inverse(data.qpos[3:7]), servos(self._asset)
+        v, down = rotate(to_body, data.qvel[:3]), rotate(to_body, -jnp.eye(3)[2])
+        joints = data.qpos[motors.qpos] - motors.home, SPEED * data.qvel[motors.qvel]
+        obs = jnp.concatenate((v, data.qvel[3:6], down, *joints, info["action"], info["command"]))
+        zero = jnp.float32(0.0)
+        return EnvState(data, obs, zero, metrics={"speed_error": zero}, info=info)

@@ -1,0 +1,150 @@
+"""Any robot's MJCF, reduced to what learning needs: bodies, joints, servos, feet and a floor.
+
+    inertias   as compiled, so that meshes can go; a mesh that collides is drawn as a capsule
+    servos     tau = k (u - q), |tau| <= t: those of the file; in place of a motor of torque t one
+               with k = t / 0.5 rad, and 0.02 s k more damping of its joint
+    contacts   the feet with the floor, and no others
+    home       keyframe `home`, else the first one, else qpos0; a free robot is put on the floor
+
+Feet are the geoms that collide and whose lowest points are within 1 cm of the lowest one at home.
+"""
+
+from functools import cache
+
+import mujoco
+import numpy as np
+
+from hybrid_rl.envs.mujoco import mjcf
+
+TIMESTEP = 0.004  # [s]
+OFFSET = 0.5  # [rad] from its target at which a servo in place of a motor has its whole torque
+DAMPING = 0.02  # [s] its damping over its stiffness
+LEVEL = 0.01  # [m] of the feet, above the lowest one
+JOINT, FREE = mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtJoint.mjJNT_FREE
+CAPSULE, PLANE, MESH = (
+    getattr(mujoco.mjtGeom, f"mjGEOM_{name}") for name in ("CAPSULE", "PLANE", "MESH")
+)
+
+
+@cache
+def simplified(file: str) -> str:
+    """MJCF text of the robot in `file`: a name in `assets`, or a path."""
+    spec = mjcf.spec(file)
+    for geom in spec.worldbody.geoms:
+        spec.delete(geom)
+    for geom in spec.geoms:
+        if geom.type == MESH and geom.contype | geom.conaffinity:
+            geom.type = CAPSULE  # fitted to the mesh
+    model = spec.compile()
+    data = _home(model)
+    for actuator in spec.actuators:
+        _serve(spec, model, actuator)
+    low = np.array([_lowest(model, data, i) for i in range(model.ngeom)])
+    collides = (model.geom_contype | model.geom_conaffinity) > 0
+    feet = collides & (low < low[collides].min(initial=np.inf) + LEVEL)
+    if model.jnt_type[0] == FREE:
+        data.qpos[2] -= low[feet].min()
+    for body in spec.bodies[1:]:
+        body.explicitinertial, body.mass = True, model.body_mass[body.id]
+        body.ipos, body.iquat = model.body_ipos[body.id], model.body_iquat[body.id]
+        body.inertia, body.fullinertia = model.body_inertia[body.id], np.full(6, np.nan)
+    for i, geom in enumerate(spec.geoms):
+        _draw(spec, model, geom, i, bool(feet[i]))
+    held = np.where(_of_joints(model), data.qpos[_address(model)], data.ctrl)
+    unused = (spec.meshes, spec.materials, spec.textures, spec.sensors, spec.keys, spec.pairs)
+    for element in (one for some in unused for one in some):
+        spec.delete(element)
+    _set_scene(spec, model)
+    spec.add_key(name="home", qpos=data.qpos, ctrl=held)
+    spec.compile()
+    return spec.to_xml()
+
+
+def _home(model: mujoco.MjModel) -> mujoco.MjData:
+    """The robot at home, with the poses of its bodies."""
+    data = mujoco.MjData(model)
+    if model.nkey:
+        named = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_KEY, "home")
+        mujoco.mj_resetDataKeyframe(model, data, max(named, 0))
+    mujoco.mj_kinematics(model, data)
+    return data
+
+
+def _of_joints(model: mujoco.MjModel) -> np.ndarray:
+    """[nu] whether an actuator moves a joint; others move a tendon, say."""
+    return model.actuator_trntype == JOINT
+
+
+def _address(model: mujoco.MjModel) -> np.ndarray:
+    """[nu] of the joints of the actuators in qpos; 0 without a joint."""
+    return model.jnt_qposadr[np.where(_of_joints(model), model.actuator_trnid[:, 0], 0)]
+
+
+def _serve(spec: mujoco.MjSpec, model: mujoco.MjModel, actuator: mujoco.MjsActuator) -> None:
+    """Make a position servo of an actuator that moves a joint by its torque."""
+    i = actuator.id
+    if model.actuator_biasprm[i, 1] or not _of_joints(model)[i]:
+        return
+    joint, gear = model.actuator_trnid[i, 0], abs(model.actuator_gear[i, 0])
+    ranges = [gear * abs(model.actuator_gainprm[i, 0]) * model.actuator_ctrlrange[i, 1]]
+    ranges += [gear * model.actuator_forcerange[i, 1], model.jnt_actfrcrange[joint, 1]]
+    most = min(each for each in ranges if each > 0)
+    actuator.set_to_position(kp=most / OFFSET)
+    actuator.gear, actuator.forcerange, actuator.forcelimited = [1, 0, 0, 0, 0, 0], [-most, most], 1
+    actuator.ctrlrange, actuator.ctrllimited = model.jnt_range[joint], model.jnt_limited[joint]
+    damped = spec.joints[joint]
+    damped.damping[0] += DAMPING * most / OFFSET
+
+
+def _lowest(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> float:
+    """The height [m] of the lowest point of a geom; of an ellipsoid, of the box around it."""
+    down, size = np.abs(data.geom_xmat[geom].reshape(3, 3)[2]), model.geom_size[geom]
+    match mujoco.mjtGeom(model.geom_type[geom]).name:
+        case "mjGEOM_SPHERE":
+            extent = size[0]
+        case "mjGEOM_CAPSULE":
+            extent = size[0] + down[2] * size[1]
+        case "mjGEOM_CYLINDER":
+            extent = size[0] * np.hypot(*down[:2]) + down[2] * size[1]
+        case _:
+            extent = down @ model.geom_aabb[geom, 3:]
+    return float(data.geom_xpos[geom, 2] - extent)
+
+
+def _draw(spec: mujoco.MjSpec, model: mujoco.MjModel, geom: mujoco.MjsGeom, i: int, foot: bool) -> None:
+    """Leave geom i as a picture, which touches the floor if it is a foot; meshes go."""
+    if geom.type == MESH:
+        spec.delete(geom)
+        return
+    geom.meshname, geom.material, geom.fromto = "", "", np.full(6, np.nan)
+    geom.pos, geom.quat, geom.size = model.geom_pos[i], model.geom_quat[i], model.geom_size[i]
+    geom.contype, geom.conaffinity, geom.group = 0, int(foot), 0
+    if foot:
+        geom.condim, geom.priority = 3, 1
+
+
+def _set_scene(spec: mujoco.MjSpec, model: mujoco.MjModel) -> None:
+    """A floor, a camera, and options for contacts of feet that all implementations solve alike."""
+    spec.add_texture(
+        name="floor",
+        type=mujoco.mjtTexture.mjTEXTURE_2D,
+        builtin=mujoco.mjtBuiltin.mjBUILTIN_CHECKER,
+        rgb1=[0.36, 0.42, 0.48],
+        rgb2=[0.44, 0.5, 0.56],
+        width=300,
+        height=300,
+    )
+    paint = spec.add_material(name="floor", texuniform=True, texrepeat=[1, 1])
+    paint.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = "floor"
+    floor = {"name": "floor", "type": PLANE, "size": [0, 0, 1], "material": "floor"}
+    spec.worldbody.add_geom(**floor, contype=1, conaffinity=0)
+    far = 2.5 * model.stat.extent
+    spec.bodies[1].add_camera(
+        name="track",
+        mode=mujoco.mjtCamLight.mjCAMLIGHT_TRACKCOM,
+        pos=[0, -far, 0.35 * far],
+        quat=[0.81, 0.59, 0, 0],
+    )
+    option = spec.option
+    option.timestep, option.cone, option.impratio = TIMESTEP, mujoco.mjtCone.mjCONE_PYRAMIDAL, 1
+    option.iterations, option.ls_iterations = 8, 16
