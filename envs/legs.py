@@ -8,10 +8,10 @@ of the base, in its frame; g: the direction of gravity there; q, q*: angles of t
 now and at home; a: action, the target of each servo, (q - q*) / 0.5 rad; a': the one before; tau:
 torques of the servos [N m]; m g: the robot's weight. o = (v, w, g, q - q*, q' / 10, a, c) [12 + 3m].
 
-Each entry of a command is uniform within `command`, or with probability 1/2 zero; a new one comes
-after 5 s, on average. Start: home, in any direction, pushed at up to 0.5 m/s and rad/s; a decision
-is 0.02 s. An episode terminates when the base tilts by more than 60 degrees, or sinks below half of
-its height at home.
+An episode has four commands, each for 5 s, and begins anew with the first; each entry of one is
+uniform within `command`, or with probability 1/2 zero. Start: home, in any direction, pushed at up
+to 0.5 m/s and rad/s; a decision is 0.02 s. An episode terminates when the base tilts by more than
+60 degrees, or sinks below half of its height at home.
 
 Source: the reward's terms are those that MuJoCo Playground's joystick tasks share (Zakka et al.
 2025); power over weight instead of torques, so that it is of one size for all robots.
@@ -36,7 +36,8 @@ from hybrid_rl.types import EnvState, Spec
 STEPS = 5  # physics steps per decision
 DT = STEPS * TIMESTEP  # [s] of a decision
 OFFSET = 0.5  # [rad] of a servo's target from home at a = 1
-HOLD = 5.0  # [s] that a command lasts, on average
+COMMANDS = 4  # of an episode
+HOLD = 250  # decisions that each lasts
 SPEED = 0.1  # of joints, in the observation
 PUSH = 0.5  # [m/s, rad/s] largest of the base at the start
 
@@ -86,7 +87,7 @@ class Legs(Body):
 
     def reset(self, key: Array) -> EnvState:
         """The robot at home, turned and pushed, with a command."""
-        turning, pushing, asking, later = jax.random.split(key, 4)
+        turning, pushing, asking, keeping, starting = jax.random.split(key, 5)
         model = self._body.model
         about = jax.random.uniform(turning, (), jnp.float32, -jnp.pi, jnp.pi)
         qpos = jnp.asarray(model.key_qpos[0], jnp.float32)
@@ -94,25 +95,24 @@ class Legs(Body):
         push = jax.random.uniform(pushing, (6,), jnp.float32, -PUSH, PUSH)
         qvel = jnp.zeros(model.nv, jnp.float32).at[:6].set(push)
         data = self._body.reset(qpos.at[3:7].set(turned), qvel)
-        info = {"command": self._asked(asking), "action": jnp.zeros(self.spec.act)}
-        info["key"] = jax.random.key_data(later)
-        return self._state(data, info)
+        most, shape = jnp.asarray(self.command, jnp.float32), (COMMANDS, 3)
+        asked = most * jax.random.uniform(asking, shape, jnp.float32, -1.0, 1.0)
+        info = {"commands": asked * jax.random.bernoulli(keeping, 0.5, shape)}
+        info["count"] = jax.random.randint(starting, (), 0, HOLD)
+        return self._state(data, info | {"action": jnp.zeros(self.spec.act)})
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state after one decision. action: [m] in [-1, 1]."""
         action = jnp.clip(action, -1.0, 1.0)
         data = self._body.step(state.data, servos(self._asset).home + OFFSET * action, STEPS)
-        changing, asking, later = jax.random.split(jax.random.wrap_key_data(state.info["key"]), 3)
-        new = jax.random.bernoulli(changing, DT / HOLD)
-        command = jnp.where(new, self._asked(asking), state.info["command"])
-        info = {"command": command, "action": action, "key": jax.random.key_data(later)}
+        count = (state.info["count"] + 1) % (HOLD * COMMANDS)
+        info = state.info | {"count": count, "action": action}
         after = self._state(data, info)
         low = data.qpos[2] < 0.5 * self._body.model.key_qpos[0, 2]
         reward = self.reward_of(state.obs, action, after.obs)
-        metrics = {"speed_error": jnp.linalg.norm(after.obs[:2] - state.info["command"][:2])}
-        return after.replace(
-            reward=reward, terminated=self.ended(after.obs) | low, metrics=metrics
-        )
+        metrics = {"speed_error": jnp.linalg.norm(after.obs[:2] - state.obs[-3:-1])}
+        ended = self.ended(after.obs) | low
+        return after.replace(reward=reward, terminated=ended, metrics=metrics)
 
     def ended(self, obs: Array) -> Array:
         """Whether [] an episode terminates at obs [o], as far as it is seen: by its tilt."""
@@ -136,18 +136,19 @@ class Legs(Body):
         """Velocity [m/s] and turning rate [rad/s] of the base, in its frame, at obs [o]."""
         return {"speed": obs[0], "velocity": obs[:2], "turning": obs[5]}
 
-    def _asked(self, key: Array) -> Array:
-        """A random command [3]. The key is consumed."""
-        drawing, keeping = jax.random.split(key)
-        most = jnp.asarray(self.command, jnp.float32)
-        kept = jax.random.bernoulli(keeping, 0.5, (3,))
-        return kept * most * jax.random.uniform(drawing, (3,), jnp.float32, -1.0, 1.0)
+    def commanded(self, state: EnvState, command: Array) -> EnvState:
+        """`state` with one command [3] for the rest of its episode."""
+        commands = jnp.broadcast_to(command, (COMMANDS, 3))
+        info, obs = state.info | {"commands": commands}, state.obs.at[-3:].set(command)
+        return state.replace(info=info, obs=obs)
 
     def _state(self, data: PhysicsState, info: dict[str, Array]) -> EnvState:
         """At the start of an episode."""
         to_body, motors = inverse(data.qpos[3:7]), servos(self._asset)
         v, down = rotate(to_body, data.qvel[:3]), rotate(to_body, -jnp.eye(3)[2])
         joints = data.qpos[motors.qpos] - motors.home, SPEED * data.qvel[motors.qvel]
-        obs = jnp.concatenate((v, data.qvel[3:6], down, *joints, info["action"], info["command"]))
+        since = info["count"] - HOLD * jnp.arange(COMMANDS)
+        command = (((since >= 0) & (since < HOLD))[:, None] * info["commands"]).sum(0)
+        obs = jnp.concatenate((v, data.qvel[3:6], down, *joints, info["action"], command))
         zero = jnp.float32(0.0)
         return EnvState(data, obs, zero, metrics={"speed_error": zero}, info=info)
