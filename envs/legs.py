@@ -95,7 +95,8 @@ class Legs(Body):
         push = jax.random.uniform(pushing, (6,), jnp.float32, -PUSH, PUSH)
         qvel = jnp.zeros(model.nv, jnp.float32).at[:6].set(push)
         data = self._body.reset(qpos.at[3:7].set(turned), qvel)
-        most, shape = jnp.asarray(self.command, jnp.float32), (COMMANDS, 3)
+        shape = COMMANDS, 3
+        most = jnp.broadcast_to(jnp.asarray(self.command, jnp.float32), shape)
         asked = most * jax.random.uniform(asking, shape, jnp.float32, -1.0, 1.0)
         info = {"commands": asked * jax.random.bernoulli(keeping, 0.5, shape)}
         info["count"] = jax.random.randint(starting, (), 0, HOLD)
@@ -135,6 +136,11 @@ class Legs(Body):
     def quantities(self, obs: Array) -> dict[str, Array]:
         """Velocity [m/s] and turning rate [rad/s] of the base, in its frame, at obs [o]."""
         return {"speed": obs[0], "velocity": obs[:2], "turning": obs[5]}
+
+    @property
+    def commands(self) -> dict[str, float]:
+        """The entries of a command, and the largest value of each, either way."""
+        return dict(zip(("forwards", "left", "turn"), self.command, strict=True))
 
     def commanded(self, state: EnvState, command: Array) -> EnvState:
         """`state` with one command [3] for the rest of its episode."""

@@ -15,6 +15,7 @@ import mujoco
 import numpy as np
 
 from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.envs.mujoco.scenery import CAMERA
 
 TIMESTEP = 0.004  # [s]
 OFFSET = 0.5  # [rad] from its target at which a servo in place of a motor has its whole torque
@@ -138,13 +139,10 @@ def _set_scene(spec: mujoco.MjSpec, model: mujoco.MjModel) -> None:
     paint.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = "floor"
     floor = {"name": "floor", "type": PLANE, "size": [0, 0, 1], "material": "floor"}
     spec.worldbody.add_geom(**floor, contype=1, conaffinity=0)
-    far = 2.5 * model.stat.extent
-    spec.bodies[1].add_camera(
-        name="track",
-        mode=mujoco.mjtCamLight.mjCAMLIGHT_TRACKCOM,
-        pos=[0, -far, 0.35 * far],
-        quat=[0.81, 0.59, 0, 0],
-    )
+    if CAMERA not in [camera.name for camera in spec.cameras]:
+        mode, far = mujoco.mjtCamLight.mjCAMLIGHT_TRACKCOM, 2.5 * model.stat.extent
+        place = {"pos": [0, -far, 0.35 * far], "quat": [0.81, 0.59, 0, 0]}
+        spec.bodies[1].add_camera(name=CAMERA, mode=mode, **place)
     option = spec.option
     option.timestep, option.cone, option.impratio = TIMESTEP, mujoco.mjtCone.mjCONE_PYRAMIDAL, 1
     option.iterations, option.ls_iterations = 8, 16

@@ -35,6 +35,7 @@ class Wishes:
     steps: int = 0  # decisions to take while paused
     again: bool = False  # an episode should begin
     numbers: dict[str, float] = field(default_factory=dict)  # of the goal
+    command: dict[str, float] = field(default_factory=dict)  # of a robot that is told; or nothing
     pull: Pull | None = None
 
 
@@ -68,6 +69,7 @@ class Panel:
             reward.on_update(
                 lambda _: self._choose(reward="" if reward.value == names[0] else reward.value)
             )
+        self._command = self._gui.add_folder("Command", visible=False)
         self._goal = self._gui.add_folder("Goal", visible=False)
         self._plots = {each: self._plot(each) for each in PLOTS}
         self._body = self._gui.add_folder(
@@ -114,6 +116,13 @@ class Panel:
             scales={"x": {"time": False}},
             visible=False,
         )
+
+    def command(self, found: Sequence[Slider]) -> None:
+        """Sliders of what the robot is told."""
+        with self._command:
+            for one in found:
+                self._slider(one, self._wishes.command.__setitem__)
+        self._command.visible = bool(found)
 
     def body(self, found: Sequence[Slider]) -> None:
         """Sliders of the body, which make other programs."""

@@ -49,6 +49,7 @@ class Player:
     def __init__(self, source: Source, params: Params, choice: Choice, seed: int) -> None:
         """Compile the first programs. `params` may be exchanged for those of a newer checkpoint."""
         self.source, self.params, self.numbers = source, params, Numbers()
+        self.command = Numbers()  # by key of `Subject.commands`; empty: as the world decides
         self._made: dict[Any, Any] = {}  # programs that were compiled
         self._subjects: dict[Any, Subject] = {}
         self._pool = ThreadPoolExecutor(1, "compile")
@@ -97,6 +98,9 @@ class Player:
         world, actor, subject = self.cast.world, self.cast.actor, self.cast.subject
         numbers = self._numbers(subject)
         self._key, now = jax.random.split(self._key)
+        if self.command and world.commanded:
+            told = [self.command.get(one.key, one.value) for one in subject.commands]
+            self.state = world.commanded(self.state, np.array(told, np.float32))
         self.decided = actor.decide(self.params, numbers, self.state, self._control, now)
         self._control = self.decided.control
         self.state = world.step(numbers, self.state, self.decided.u)

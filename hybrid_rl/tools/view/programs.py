@@ -39,6 +39,7 @@ class World:
     step: Callable[[Numbers, EnvState, Array], EnvState]
     pose: Callable[[EnvState], Array]  # [nq]
     structure: Any  # of its states
+    commanded: Callable[[EnvState, Array], EnvState] | None  # by `Subject.commands` [k]
 
 
 @dataclass(frozen=True)
@@ -89,12 +90,17 @@ def world(episode: Episode, numbers: Numbers) -> World:
     key = jax.random.key(0)
     like = jax.eval_shape(episode.reset, key)
     u = jax.ShapeDtypeStruct((episode.spec.act,), jnp.float32)
+    env: Any = episode.env
+    told = None
+    if commands := Subject(episode, {}, frozenset()).commands:
+        told = jax.jit(env.commanded).lower(like, jnp.zeros(len(commands))).compile()
     return World(
         episode,
         jax.jit(episode.reset).lower(key).compile(),
         jax.jit(step).lower(_arrays(numbers), like, u).compile(),
         jax.jit(scenery.pose_of(episode.env)).lower(like).compile(),
         jax.tree.structure(like),
+        told,
     )
 
 

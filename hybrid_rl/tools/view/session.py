@@ -45,6 +45,7 @@ class Session:
         self._dt, self._stride = episode.spec.dt, ceil(1 / episode.spec.dt / FASTEST)
         self._scene = Scene(server, episode.env, lambda pull: setattr(wishes, "pull", pull))
         self._panel = Panel(server, wishes, player.modes, rewards)
+        self._panel.command(player.cast.subject.commands)
         self._panel.body(player.cast.subject.body)
         self._picture()
 
@@ -74,7 +75,7 @@ class Session:
         wishes, player = self.wishes, self.player
         if self._follower and (newest := self._follower.newest()):
             player.params, self._step = newest
-        player.numbers = dict(wishes.numbers)
+        player.numbers, player.command = dict(wishes.numbers), dict(wishes.command)
         if wishes.choice != player.wanted:
             player.choose(wishes.choice)
         before = player.cast.choice.reward

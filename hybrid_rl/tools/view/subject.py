@@ -69,6 +69,12 @@ class Subject:
         found = [each for each in found if each.key.partition(".")[2] in DISTURBED]
         return sliders("env", self.episode.env) + found
 
+    @cached_property
+    def commands(self) -> list[Slider]:
+        """What the robot can be told, if its environment has `commands`, and `commanded`."""
+        each = getattr(self.episode.env, "commands", {}).items()
+        return [Slider(f"command.{name}", 0.0, -most, most, most / 20) for name, most in each]
+
 
 def quicker(controller: Controller) -> Controller:
     """A planner with fewer candidates, and fewer steps of them; the same if it has none."""
