@@ -168,6 +168,7 @@ def _change(model: mujoco.MjModel, values: Mapping[str, float]) -> None:
         if name == "motor":
             model.actuator_gainprm[int(index)] *= factor
             model.actuator_biasprm[int(index)] *= factor
+            model.actuator_forcerange[int(index)] *= factor
     mujoco.mj_setConst(model, mujoco.MjData(model))  # what follows from masses and gains
     model.stat.meaninertia = model.dof_M0.mean()  # except for this, a scale of the solver
 

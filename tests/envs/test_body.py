@@ -34,9 +34,11 @@ def compiled(task, factor, payload):
         geom.mass, geom.density = geom.mass * factor, geom.density * factor
     for body in spec.bodies:
         if body.explicitinertial:
-            body.mass, body.inertia = body.mass * factor + payload, body.inertia * factor
+            body.mass, body.inertia = body.mass * factor, body.inertia * factor
     root = spec.bodies[1]
-    if payload and not root.explicitinertial:
+    if root.explicitinertial:
+        root.mass += payload
+    elif payload:
         centre = spec.compile().body_ipos[1]
         at = {"type": mujoco.mjtGeom.mjGEOM_SPHERE, "size": [1e-3, 0, 0], "pos": centre}
         root.add_geom(**at, mass=payload, contype=0, conaffinity=0)
@@ -57,7 +59,7 @@ def test_masses_and_all_that_follows_are_those_of_a_compiled_model(task):
     assert make(task, mass=1, motors=[1.0] * make(task).spec.act)._body.model is plain
 
 
-@pytest.mark.parametrize("task", ROBOTS)
+@pytest.mark.parametrize("task", [task for task in ROBOTS if task != "legs"])  # of servos
 def test_a_weak_motor_is_a_smaller_action(task):
     """In the same state; other motors, and the drag of the quadcopter, stay."""
     factors = np.ones(make(task).spec.act, np.float32)

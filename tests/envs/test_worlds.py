@@ -41,7 +41,7 @@ CASES = [
     *((task, each) for task in SIMULATED for each in IMPLEMENTATIONS),
     *((task, "analytic") for task in ANALYTIC),
 ]
-STATE = {"two_link": 4, "sprk_sand": 4, "sawyer_torque": 14}  # entries before a reference
+STATE = {"two_link": 4, "sprk_sand": 4, "sawyer_torque": 14, "legs": 45}  # before a reference
 LATE = ("lander",)  # an action moves velocities now, and positions one decision later
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "tasks.md"
 

@@ -35,14 +35,14 @@ FIELDS = {
     "sawyer_torque": {"learn": 3},
 }
 ARMS = ("sawyer_push", "panda_stack")  # controls depend on states
-COMPUTED = (*ARMS, "quadcopter", "humanoid")  # controls are not the actions
+COMPUTED = (*ARMS, "quadcopter", "humanoid", "legs")  # controls are not the actions
 TOUCHING, LIFTED, OTHER, BROKEN = (0, 0), (0, 1), (1, 0), (1, 1)  # lanes [seed, env]
 IMPLEMENTATIONS = ("native", "mjx")
 
 
 TOUCH = {  # geoms that touch each other; what the lifted lane raises in qpos, and how far [m]
     **dict.fromkeys(("halfcheetah", "hopper", "walker2d"), (("floor",), (1,), 10.0)),
-    **dict.fromkeys(("ant", "humanoid"), (("floor",), (2,), 10.0)),
+    **dict.fromkeys(("ant", "humanoid", "legs"), (("floor",), (2,), 10.0)),
     "sawyer_push": (("rod", "cube"), (9,), 30.0),
     "panda_stack": (("left_pad", "block"), (11, 18), 30.0),
 }
