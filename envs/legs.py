@@ -17,19 +17,15 @@ Source: the reward's terms are those that MuJoCo Playground's joystick tasks sha
 2025); power over weight instead of torques, so that it is of one size for all robots.
 """
 
-from functools import cache
-from typing import NamedTuple
-
 import jax
 import jax.numpy as jnp
-import numpy as np
 from jax import Array
 
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.body import Body
 from hybrid_rl.envs.mujoco.kinematics import from_axis_angle, inverse, quat_multiply, rotate
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
-from hybrid_rl.envs.mujoco.simplified import TIMESTEP, simplified
+from hybrid_rl.envs.mujoco.simplified import TIMESTEP, servos, simplified
 from hybrid_rl.fields import NotNegative, part
 from hybrid_rl.types import EnvState, Spec
 
@@ -42,33 +38,11 @@ SPEED = 0.1  # of joints, in the observation
 PUSH = 0.5  # [m/s, rad/s] largest of the base at the start
 
 
-class Servos(NamedTuple):
-    """The motors of a model: their joints, home, and torque clip(k (u - q), -t, t)."""
-
-    qpos: np.ndarray  # [m] addresses
-    qvel: np.ndarray  # [m]
-    home: np.ndarray  # [m] [rad]
-    stiffness: np.ndarray  # [m] [N m/rad]
-    most: np.ndarray  # [m] [N m]
-
-
-@cache
-def servos(asset: str) -> Servos:
-    """The servos of a simplified model."""
-    model = mjcf.load(asset)
-    joints, limited = model.actuator_trnid[:, 0], model.actuator_forcelimited.astype(bool)
-    most = np.where(limited, model.actuator_forcerange[:, 1], np.inf)
-    gains = model.actuator_gainprm[:, 0]
-    numbers = (model.key_ctrl[0], gains, most)
-    where = model.jnt_qposadr[joints], model.jnt_dofadr[joints]
-    return Servos(*where, *(each.astype(np.float32) for each in numbers))
-
-
 @part
 class Legs(Body):
     """A robot with a free base and position servos; `physics` is native, mjx, warp or auto."""
 
-    robot: str = "go1.xml"  # a file of `assets`, or a path
+    robot: str = "go1.xml"  # a file, or a name of MuJoCo Menagerie
     command: tuple[NotNegative, ...] = (1.0, 0.5, 1.0)  # largest [m/s, m/s, rad/s]
 
     @property
@@ -121,10 +95,11 @@ class Legs(Body):
 
     def reward_of(self, x: Array, u: Array, after: Array) -> Array:
         """The reward [] of action u [m] at obs x [o], which led to `after` [o]."""
-        m, motors, model = len(u), servos(self._asset), self._body.model
+        m, model = len(u), self._body.model
         command, before = x[-3:], x[-3 - m : -3]
         v, w, g, away = after[:3], after[3:6], after[6:9], after[9 : 9 + m]
-        torque = jnp.clip(motors.stiffness * (OFFSET * u - away), -motors.most, motors.most)
+        stiffness, (low, high) = model.actuator_gainprm[:, 0], model.actuator_forcerange.T
+        torque = jnp.clip(stiffness.astype(jnp.float32) * (OFFSET * u - away), low, high)
         power = jnp.abs(torque * after[9 + m : 9 + 2 * m] / SPEED).sum()
         weight = float(model.body_mass.sum() * -model.opt.gravity[2])
         follows = jnp.exp(-4 * ((v[:2] - command[:2]) ** 2).sum())

@@ -2,20 +2,26 @@
 
     inertias   as compiled, so that meshes can go; a mesh that collides is drawn as a capsule
     servos     tau = k (u - q), |tau| <= t: those of the file; in place of a motor of torque t one
-               with k = t / 0.5 rad, and 0.02 s k more damping of its joint
-    contacts   the feet with the floor, and no others
-    home       keyframe `home`, else the first one, else qpos0; a free robot is put on the floor
+               with k = t / 0.5 rad, and damping of its joint: 0.02 s k, or that of a servo of speed
+    contacts   the feet of a free robot with the floor, and no others
+    home       keyframe `home`, else the first one, else qpos0, or the middle of a joint's range if
+               that is out of it; a free robot is put on the floor
 
-Feet are the geoms that collide and whose lowest points are within 1 cm of the lowest one at home.
+A robot is a file of `assets`, a path, MJCF text, or a name of MuJoCo Menagerie, whose package is
+asked where it has the file, but not to download it. Feet are the geoms that collide and whose lowest points are within 1 cm of the lowest one at home.
 """
 
 from functools import cache
+from importlib import import_module
+from pathlib import Path
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
 
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.scenery import CAMERA
+from hybrid_rl.errors import UsageError, install
 
 TIMESTEP = 0.004  # [s]
 OFFSET = 0.5  # [rad] from its target at which a servo in place of a motor has its whole torque
@@ -27,10 +33,45 @@ CAPSULE, PLANE, MESH = (
 )
 
 
+class Servos(NamedTuple):
+    """The motors of a model: their joints, and their targets at home."""
+
+    qpos: np.ndarray  # [m] addresses
+    qvel: np.ndarray  # [m]
+    home: np.ndarray  # [m] [rad]
+
+
 @cache
-def simplified(file: str) -> str:
-    """MJCF text of the robot in `file`: a name in `assets`, or a path."""
-    spec = mjcf.spec(file)
+def servos(asset: str, count: int | None = None) -> Servos:
+    """The first `count` servos of a simplified model; None: all."""
+    model = mjcf.load(asset)
+    joints = model.actuator_trnid[:count, 0]
+    home = model.key_ctrl[0, :count].astype(np.float32)
+    return Servos(model.jnt_qposadr[joints], model.jnt_dofadr[joints], home)
+
+
+def located(robot: str) -> str:
+    """The name of a robot's model for `mjcf.spec`."""
+    if robot.rstrip().endswith("</mujoco>"):
+        return robot
+    if robot.endswith(".xml"):
+        return str(Path(robot).absolute()) if Path(robot).is_file() else robot
+    try:
+        menagerie = import_module("mujoco_menagerie")
+        found, cache = menagerie.get(robot), menagerie.Cache()
+    except (ImportError, LookupError) as error:
+        line = f"robot={robot}: {error}; give a file, or a robot of MuJoCo Menagerie"
+        raise UsageError(f"{line} ({install('menagerie')})") from error
+    if cache.root is None and not cache.is_cached(found):
+        line = "is not on this machine; download it by `mujoco-menagerie prefetch"
+        raise UsageError(f"robot={robot}: {line} {robot}`")
+    return str(found.xml(found.default_model))
+
+
+@cache
+def simplified(robot: str) -> str:
+    """MJCF text of a robot."""
+    spec = mjcf.spec(located(robot))
     for geom in spec.worldbody.geoms:
         spec.delete(geom)
     for geom in spec.geoms:
@@ -40,10 +81,11 @@ def simplified(file: str) -> str:
     data = _home(model)
     for actuator in spec.actuators:
         _serve(spec, model, actuator)
-    low = np.array([_lowest(model, data, i) for i in range(model.ngeom)])
-    collides = (model.geom_contype | model.geom_conaffinity) > 0
-    feet = collides & (low < low[collides].min(initial=np.inf) + LEVEL)
+    feet = np.zeros(model.ngeom, bool)
     if model.jnt_type[0] == FREE:
+        low = np.array([_lowest(model, data, i) for i in range(model.ngeom)])
+        collides = (model.geom_contype | model.geom_conaffinity) > 0
+        feet = collides & (low < low[collides].min() + LEVEL)
         data.qpos[2] -= low[feet].min()
     for body in spec.bodies[1:]:
         body.explicitinertial, body.mass = True, model.body_mass[body.id]
@@ -52,7 +94,9 @@ def simplified(file: str) -> str:
     for i, geom in enumerate(spec.geoms):
         _draw(spec, model, geom, i, bool(feet[i]))
     held = np.where(_of_joints(model), data.qpos[_address(model)], data.ctrl)
-    unused = (spec.meshes, spec.materials, spec.textures, spec.sensors, spec.keys, spec.pairs)
+    for material in spec.materials:
+        material.textures = [""] * len(material.textures)
+    unused = (spec.meshes, spec.textures, spec.sensors, spec.keys, spec.pairs)
     for element in (one for some in unused for one in some):
         spec.delete(element)
     _set_scene(spec, model)
@@ -67,6 +111,10 @@ def _home(model: mujoco.MjModel) -> mujoco.MjData:
     if model.nkey:
         named = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_KEY, "home")
         mujoco.mj_resetDataKeyframe(model, data, max(named, 0))
+    for joint in np.flatnonzero(model.jnt_limited & (model.nkey == 0)):
+        (low, high), at = model.jnt_range[joint], model.jnt_qposadr[joint]
+        if not low <= data.qpos[at] <= high:
+            data.qpos[at] = (low + high) / 2
     mujoco.mj_kinematics(model, data)
     return data
 
@@ -93,8 +141,8 @@ def _serve(spec: mujoco.MjSpec, model: mujoco.MjModel, actuator: mujoco.MjsActua
     actuator.set_to_position(kp=most / OFFSET)
     actuator.gear, actuator.forcerange, actuator.forcelimited = [1, 0, 0, 0, 0, 0], [-most, most], 1
     actuator.ctrlrange, actuator.ctrllimited = model.jnt_range[joint], model.jnt_limited[joint]
-    damped = spec.joints[joint]
-    damped.damping[0] += DAMPING * most / OFFSET
+    own = -model.actuator_biasprm[i, 2] * gear**2
+    spec.joints[joint].damping[0] += max(DAMPING * most / OFFSET, own)
 
 
 def _lowest(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> float:
@@ -112,12 +160,14 @@ def _lowest(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> float:
     return float(data.geom_xpos[geom, 2] - extent)
 
 
-def _draw(spec: mujoco.MjSpec, model: mujoco.MjModel, geom: mujoco.MjsGeom, i: int, foot: bool) -> None:
+def _draw(
+    spec: mujoco.MjSpec, model: mujoco.MjModel, geom: mujoco.MjsGeom, i: int, foot: bool
+) -> None:
     """Leave geom i as a picture, which touches the floor if it is a foot; meshes go."""
     if geom.type == MESH:
         spec.delete(geom)
         return
-    geom.meshname, geom.material, geom.fromto = "", "", np.full(6, np.nan)
+    geom.meshname, geom.fromto = "", np.full(6, np.nan)
     geom.pos, geom.quat, geom.size = model.geom_pos[i], model.geom_quat[i], model.geom_size[i]
     geom.contype, geom.conaffinity, geom.group = 0, int(foot), 0
     if foot:
@@ -135,7 +185,8 @@ def _set_scene(spec: mujoco.MjSpec, model: mujoco.MjModel) -> None:
         width=300,
         height=300,
     )
-    paint = spec.add_material(name="floor", texuniform=True, texrepeat=[1, 1])
+    paint = spec.material("floor") or spec.add_material(name="floor")
+    paint.texuniform, paint.texrepeat = True, [1, 1]
     paint.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = "floor"
     floor = {"name": "floor", "type": PLANE, "size": [0, 0, 1], "material": "floor"}
     spec.worldbody.add_geom(**floor, contype=1, conaffinity=0)

@@ -35,7 +35,7 @@ FIELDS = {
     "sawyer_torque": {"learn": 3},
 }
 ARMS = ("sawyer_push", "panda_stack")  # controls depend on states
-COMPUTED = (*ARMS, "quadcopter", "humanoid", "legs")  # controls are not the actions
+COMPUTED = (*ARMS, "quadcopter", "humanoid", "legs", "reach")  # controls are not the actions
 TOUCHING, LIFTED, OTHER, BROKEN = (0, 0), (0, 1), (1, 0), (1, 1)  # lanes [seed, env]
 IMPLEMENTATIONS = ("native", "mjx")
 

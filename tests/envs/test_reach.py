@@ -1,0 +1,66 @@
+"""Arms of any file: the tip, the pose to reach, and the way there."""
+
+import jax
+import jax.numpy as jnp
+import mujoco
+import numpy as np
+import pytest
+from worlds import jitted
+
+from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.envs.reach import STRIDE, Reach
+
+ARM = """<mujoco>
+  <compiler autolimits="true" angle="radian"/>
+  <worldbody>
+    <body pos="0 0 0.5">
+      <joint name="a" axis="0 0 1" range="0.2 2"/> <geom size="0.03" fromto="0 0 0 0.3 0 0" type="capsule"/>
+      <body pos="0.3 0 0">
+        <joint name="b" axis="0 1 0"/> <geom size="0.03" fromto="0 0 0 0.3 0 0" type="capsule"/>
+        <body name="hand" pos="0.3 0 0">
+          <geom size="0.03"/> <site name="nail" pos="0.1 0 0"/>
+          <body><joint name="grip" type="slide" range="0 0.1"/> <geom size="0.01"/></body>
+        </body>
+      </body>
+    </body>
+  </worldbody>
+  <actuator>
+    <position joint="a" kp="200" kv="20"/> <motor joint="b" ctrlrange="-50 50"/>
+    <position joint="grip" kp="9"/>
+  </actuator>
+</mujoco>"""
+
+
+@pytest.fixture(scope="module")
+def env():
+    return Reach(robot=ARM, physics="native")
+
+
+def test_the_tip_is_where_the_last_hinge_ends_or_a_site_and_home_is_within_ranges(env):
+    assert env.spec == (4 * 2 + 6, 2, 0.02, None)
+    for each, tip in ((env, 0.6), (Reach(robot=ARM, site="nail"), 0.7)):
+        model = mjcf.load(each._asset)
+        np.testing.assert_allclose(model.key_qpos[0], [1.1, 0, 0])
+        p, _ = each._tip(jnp.asarray(model.key_qpos[0], jnp.float32))
+        want = [tip * np.cos(1.1), tip * np.sin(1.1), 0.5]
+        np.testing.assert_allclose(p, want, atol=1e-6)
+
+
+def test_servos_that_move_to_the_angles_of_the_pose_reach_it(env):
+    """And the reward is then 1.5, its largest value, while actions rest."""
+    start = jitted(env, "reset")(jax.random.key(1))
+    target, data = start.info["target"], mujoco.MjData(mjcf.load(env.scene()))
+    goal = np.array([np.arctan2(target[1], target[0]), 0.0])
+    goal[1] = np.arcsin(np.clip((0.5 - target[2]) / 0.3, -1, 1))
+    state = start
+    for _ in range(100):
+        u = jnp.clip((jnp.asarray(goal, jnp.float32) - state.info["servos"]) / STRIDE, -1, 1)
+        state = jitted(env, "step")(state, u)
+    assert state.metrics["success"] == 1
+    assert 1.4 < state.reward <= 1.5
+    assert start.metrics["success"] == 0
+    np.testing.assert_allclose(state.obs[6:9], target[:3] - env._tip(state.data.qpos)[0], atol=1e-6)
+    data.qpos[:] = env.pose(state)
+    mujoco.mj_kinematics(mjcf.load(env.scene()), data)
+    np.testing.assert_allclose(data.body("target").xpos, target[:3], atol=1e-6)
+    np.testing.assert_allclose(data.body("hand").xpos, target[:3], atol=0.02)
