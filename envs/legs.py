@@ -6,7 +6,7 @@
 c: the command, forwards, to the left [m/s] and to turn [rad/s]; v, w: velocity and angular velocity
 of the base, in its frame; g: the direction of gravity there; q, q*: angles of the motors' joints
 now and at home; a: action, the target of each servo, (q - q*) / 0.5 rad; a': the one before; tau:
-torques of the servos [N m]; m g: the robot's weight. o = (v, w, g, q - q*, q' / 10, a, c) [12 + 3m].
+torques of the servos [N m]; m g: weight. o = (v, w, g, q - q*, q' / 10, a, c) [12 + 3m].
 
 An episode has four commands, each for 5 s, and begins anew with the first; each entry of one is
 uniform within `command`, or with probability 1/2 zero. Start: home, in any direction, pushed at up

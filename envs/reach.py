@@ -98,7 +98,7 @@ class Reach(Body):
         u, limited = state.info["servos"] + STRIDE * action, model.actuator_ctrllimited[:m] > 0
         low, high = model.actuator_ctrlrange[:m].T.astype(np.float32)
         u = jnp.where(limited, jnp.clip(u, low, high), u)
-        control = jnp.asarray(model.key_ctrl[0], jnp.float32).at[:m].set(u)
+        control = jnp.concatenate((u, jnp.asarray(model.key_ctrl[0, m:], jnp.float32)))
         data = self._body.step(state.data, control, STEPS)
         after = self._state(data, state.info | {"servos": u, "action": action})
         change = ((action - state.info["action"]) ** 2).sum()

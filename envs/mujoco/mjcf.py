@@ -42,8 +42,8 @@ def path(asset: str) -> Path:
 
 @cache
 def text(asset: str) -> str:
-    """The MJCF text of the file `asset` with its includes expanded."""
-    plain = path(asset).read_text(encoding="utf-8")
+    """The MJCF text of `asset` with its includes expanded."""
+    plain = asset if _is_text(asset) else path(asset).read_text(encoding="utf-8")
     if "<include" not in plain:
         return plain
     spec = mujoco.MjSpec.from_file(str(path(asset)))
@@ -80,9 +80,10 @@ def spec(asset: str) -> mujoco.MjSpec:
     """A new description of `asset`, which may be modified; without changes of the whole model."""
     file, values = _split(asset)
     try:
-        is_text = file.lstrip().startswith("<")
-        read = mujoco.MjSpec.from_string if is_text else mujoco.MjSpec.from_file
-        result = read(file if is_text else str(path(file)))
+        if _is_text(file):
+            result = mujoco.MjSpec.from_string(file)
+        else:
+            result = mujoco.MjSpec.from_file(str(path(file)))
     except ValueError as error:
         line = str(error)
         raise ValueError(line if file in line else f"{file}: {line}") from error
@@ -90,6 +91,10 @@ def spec(asset: str) -> mujoco.MjSpec:
         if not _whole(key):
             _set(result, key, value)
     return result
+
+
+def _is_text(asset: str) -> bool:
+    return asset.lstrip().startswith("<")
 
 
 def _split(asset: str) -> tuple[str, dict[str, float]]:

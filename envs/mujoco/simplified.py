@@ -8,7 +8,8 @@
                that is out of it; a free robot is put on the floor
 
 A robot is a file of `assets`, a path, MJCF text, or a name of MuJoCo Menagerie, whose package is
-asked where it has the file, but not to download it. Feet are the geoms that collide and whose lowest points are within 1 cm of the lowest one at home.
+asked where it has the file, but not to download it. Feet are the geoms that collide and whose
+lowest points are within 1 cm of the lowest one at home.
 """
 
 from functools import cache

@@ -14,7 +14,8 @@ ARM = """<mujoco>
   <compiler autolimits="true" angle="radian"/>
   <worldbody>
     <body pos="0 0 0.5">
-      <joint name="a" axis="0 0 1" range="0.2 2"/> <geom size="0.03" fromto="0 0 0 0.3 0 0" type="capsule"/>
+      <joint name="a" axis="0 0 1" range="0.2 2"/>
+      <geom size="0.03" fromto="0 0 0 0.3 0 0" type="capsule"/>
       <body pos="0.3 0 0">
         <joint name="b" axis="0 1 0"/> <geom size="0.03" fromto="0 0 0 0.3 0 0" type="capsule"/>
         <body name="hand" pos="0.3 0 0">
