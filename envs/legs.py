@@ -120,8 +120,8 @@ class Legs(Body):
     def commanded(self, state: EnvState, command: Array) -> EnvState:
         """`state` with one command [3] for the rest of its episode."""
         commands = jnp.broadcast_to(command, (COMMANDS, 3))
-        info, obs = state.info | {"commands": commands}, state.obs.at[-3:].set(command)
-        return state.replace(info=info, obs=obs)
+        obs = jnp.concatenate((state.obs[:-3], command))
+        return state.replace(info=state.info | {"commands": commands}, obs=obs)
 
     def _state(self, data: PhysicsState, info: dict[str, Array]) -> EnvState:
         """At the start of an episode."""

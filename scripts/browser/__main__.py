@@ -25,7 +25,7 @@ WORK = ROOT / "build" / "browser"
 VERSIONS = {"@mujoco/mujoco": "3.14.0", "three": "0.187.0", "esbuild": "0.28.2"}
 SHA256 = {  # of what was made; a change of a version or of page/*.js changes it
     "mujoco.wasm": "2d380f1070a556c3003b4a7c7c10c98a5f61db4e91815de1075ec478e9487e76",
-    "robot.js": "a905b2a56c88f9fde235f2aa3b00c1bd6895590d5faef2801c507e192ad615f1",
+    "robot.js": "966a86097d37d23e6d7c8911dcdc8afae3340c6b929f2fbdb0a797c064a9f170",
 }
 NODE_ONLY = ("module", "fs", "path", "url", "crypto", "worker_threads")  # of MuJoCo's glue
 GLOBAL = "window.MUJOCO_WASM_GZ="

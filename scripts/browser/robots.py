@@ -5,6 +5,8 @@ Each robot is a policy of policies/ with the world and the episode that its file
     window.ROBOTS.halfcheetah = {
       models: {physics, scene},           MJCF
       step(s, u, physics), pose(s),       of the world, as JavaScript
+      commands: {name: most},             of a robot that is told what to do
+      tell(s, o, c),                      state and observation with the command c
       repeat, dt, limit, ...              of the episode
       policy: {sizes, weights, ...},      a multilayer perceptron, as `export` has it
       starts: [{s, o}, ...]}              first states of episodes
@@ -87,7 +89,11 @@ def robot(name: str) -> str:
         "policy": network(layers(episode.spec, *policy.learner(mode="policy"))),
         "starts": [_start(first, i) for i in range(STARTS)],
     }
-    return f'{json.dumps(values)[:-1]},\n"step": {step},\n"pose": {_pose(env, like)}\n}}'
+    functions = {"step": step, "pose": _pose(env, like)}
+    if commands := getattr(env, "commands", None):
+        values["commands"], functions["tell"] = commands, _tell(env, like, len(commands))
+    lines = ",\n".join(f'"{each}": {text}' for each, text in functions.items())
+    return f"{json.dumps(values)[:-1]},\n{lines}\n}}"
 
 
 def keys() -> Array:
@@ -139,6 +145,20 @@ def _pose(env: Any, like: EnvState) -> str:
     program = Program()
     qpos = program.function(pose, ("s",), ((like.data, like.info),))
     return f"(s) => {{ {' '.join(program.lines)} return [{_joined(qpos)}]; }}"
+
+
+def _tell(env: Any, like: EnvState, size: int) -> str:
+    """State and observation with a command [size], as a function of JavaScript."""
+
+    def tell(state: tuple[Any, Any], obs: Array, command: Array) -> tuple[Any, ...]:
+        told = env.commanded(like.replace(data=state[0], info=state[1], obs=obs), command)
+        return (told.data, told.info), told.obs
+
+    program, command = Program(), np.zeros(size, np.float32)
+    given = (like.data, like.info), like.obs, command
+    state, obs = program.function(tell, ("s", "o", "c"), given)
+    lines = " ".join(program.lines)
+    return f"(s, o, c) => {{ {lines} return {{ s: [{_joined(state)}], o: [{_joined(obs)}] }}; }}"
 
 
 def _joined(tree: Any) -> str:

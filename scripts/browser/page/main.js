@@ -32,8 +32,9 @@ class Page {
     const chooser = element("div", "robots-bar", ...this.buttons);
     const controls = element("div", "robots-bar", this.pauseButton,
       button("Reset", () => this.restart(this.start + 1)), this.status);
+    this.commands = element("div", "robots-bar");
     const python = element("p", "robots-hint", "The same in Python: ", this.command);
-    root.replaceChildren(chooser, this.stage, controls, this.hint, python);
+    root.replaceChildren(chooser, this.stage, this.commands, controls, this.hint, python);
     this.listen();
     this.theme();
   }
@@ -46,6 +47,7 @@ class Page {
     this.stats = { name, time: 0, decisions: 0, pushes: 0, falls: 0, x: 0, z: 0 };
     this.grabbed = null;
     this.restart(0);
+    this.listenToCommands(definition.commands ?? {});
     this.picture.load(definition.models.scene, this.world.pose);
     for (const each of this.buttons) each.setAttribute("aria-pressed", each.dataset.name === name);
     this.picture.canvas.setAttribute("aria-label", `${definition.title}, simulated`);
@@ -53,6 +55,21 @@ class Page {
     const pull = this.world.model ? "Drag the robot to pull at it. " : "";
     this.hint.textContent = `${pull}Drag beside it to turn the view.`;
     this.pause(false);
+  }
+
+  // Sliders of what the robot is told; until one is moved, the episode has commands of its own.
+  listenToCommands(commands) {
+    const sliders = Object.entries(commands).map(([name, most]) => {
+      const slider = element("input", "");
+      Object.assign(slider, { type: "range", min: -most, max: most, step: most / 20, value: 0 });
+      slider.addEventListener("input", () => {
+        this.world.told = sliders.map(each => Number(each.value));
+      });
+      return slider;
+    });
+    const names = Object.keys(commands);
+    const labels = sliders.map((slider, i) => element("label", "", names[i], " ", slider));
+    this.commands.replaceChildren(...labels);
   }
 
   restart(start) {

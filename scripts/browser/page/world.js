@@ -82,6 +82,7 @@ export class World {
 
   // One decision: an action of the policy, repeated until the episode ends.
   decide() {
+    if (this.told) Object.assign(this, this.definition.tell(this.s, this.o, this.told));
     const u = this.act(this.o);
     this.reward = 0;
     this.ended = false;
