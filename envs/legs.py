@@ -1,7 +1,7 @@
 """Legs: a robot of any MJCF file walks by command, upright and smoothly.
 
-    r = max(0, e^(-4 |v_xy - c_xy|^2) + e^(-4 (w_z - c_z)^2) / 2 + e^(-|q - q*|^2) / 2 - v_z^2 / 2
-        - |w_xy|^2 / 20 - 5 |g_xy|^2 - |a - a'|^2 / 100 - P / (10 m g)),    P = sum_i |tau_i q_i'|
+    r = max(0, e^(-4 |v_xy - c_xy|^2) + e^(-4 (w_z - c_z)^2) / 2 + e^(-|q - q*|^2 / 4) / 2 - v_z^2 / 2
+        - |w_xy|^2 / 20 - 5 |g_xy|^2 - |a - a'|^2 / 20 - P / (10 m g)),    P = sum_i |tau_i q_i'|
 
 c: the command, forwards, to the left [m/s] and to turn [rad/s]; v, w: velocity and angular velocity
 of the base, in its frame; g: the direction of gravity there; q, q*: angles of the motors' joints
@@ -105,8 +105,8 @@ class Legs(Body):
         follows = jnp.exp(-4 * ((v[:2] - command[:2]) ** 2).sum())
         turns = jnp.exp(-4 * (w[2] - command[2]) ** 2)
         cost = v[2] ** 2 / 2 + (w[:2] ** 2).sum() / 20 + 5 * (g[:2] ** 2).sum()
-        cost += ((u - before) ** 2).sum() / 100 + power / (10 * weight)
-        return jnp.maximum(follows + turns / 2 + jnp.exp(-(away**2).sum()) / 2 - cost, 0.0)
+        cost += ((u - before) ** 2).sum() / 20 + power / (10 * weight)
+        return jnp.maximum(follows + turns / 2 + jnp.exp(-(away**2).sum() / 4) / 2 - cost, 0.0)
 
     def quantities(self, obs: Array) -> dict[str, Array]:
         """Velocity [m/s] and turning rate [rad/s] of the base, in its frame, at obs [o]."""

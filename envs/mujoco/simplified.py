@@ -56,7 +56,8 @@ def located(robot: str) -> str:
     if robot.rstrip().endswith("</mujoco>"):
         return robot
     if robot.endswith(".xml"):
-        return str(Path(robot).absolute()) if Path(robot).is_file() else robot
+        ours = (mjcf.FOLDER / robot).is_file()  # before a file of the same name here
+        return robot if ours else str(Path(robot).absolute())
     try:
         menagerie = import_module("mujoco_menagerie")
         found, cache = menagerie.get(robot), menagerie.Cache()
