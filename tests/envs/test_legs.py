@@ -1,5 +1,8 @@
 """Robots of any file: what is kept of it, and a robot that walks by command."""
 
+import sys
+from types import SimpleNamespace
+
 import jax
 import jax.numpy as jnp
 import mujoco
@@ -9,7 +12,8 @@ from worlds import jitted
 
 from hybrid_rl.envs.legs import HOLD, Legs
 from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.envs.mujoco.simplified import simplified
+from hybrid_rl.envs.mujoco.simplified import located, simplified
+from hybrid_rl.errors import UsageError
 
 LEG = """<body name="{0}" pos="{1} {2} 0">
   <joint name="{0}_hip" axis="0 1 0" range="-1 1" damping="0.1"/>
@@ -71,6 +75,32 @@ def test_a_file_is_reduced_to_bodies_servos_feet_and_a_floor():
     np.testing.assert_allclose([data.geom(name).xpos[2] for name in touching], 0.03, atol=1e-5)
     assert data.qpos[2] == pytest.approx(0.2 * np.cos(0.5) * 2 + 0.03, abs=1e-5)
     assert mjcf.load(simplified(simplified(TABLE))).body_mass == pytest.approx(model.body_mass)
+
+
+def test_a_name_is_a_robot_of_the_menagerie_which_is_never_downloaded(tmp_path, monkeypatch):
+    (tmp_path / "table.xml").write_text(TABLE)
+    robot = SimpleNamespace(default_model="table", xml=lambda entry: tmp_path / f"{entry}.xml")
+    cache, robots = SimpleNamespace(root=None, is_cached=lambda _: False), {"table": robot}
+    with pytest.raises(UsageError, match=r"robot=table: .*hybrid_rl\[menagerie\]"):
+        located("table")  # not installed here
+    package = SimpleNamespace(get=robots.__getitem__, Cache=lambda: cache)
+    monkeypatch.setitem(sys.modules, "mujoco_menagerie", package)
+    with pytest.raises(UsageError, match="mujoco-menagerie prefetch table"):
+        located("table")
+    with pytest.raises(UsageError, match="robot=chair: 'chair'"):
+        located("chair")
+    cache.root = tmp_path
+    assert Legs(robot="table").spec == (36, 8, 0.02, None)
+
+
+def test_a_file_of_ours_comes_before_one_of_its_name_here(tmp_path, monkeypatch):
+    for name in ("go1.xml", "mine.xml"):
+        (tmp_path / name).write_text(TABLE)
+    monkeypatch.chdir(tmp_path)
+    assert [located(name) for name in ("go1.xml", "mine.xml")] == [
+        "go1.xml",
+        str(tmp_path / "mine.xml"),
+    ]
 
 
 def test_it_stands_and_follows_no_command(env):

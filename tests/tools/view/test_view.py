@@ -17,17 +17,18 @@ from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
 from hybrid_rl.envs.ant import Ant
 from hybrid_rl.envs.halfcheetah import HalfCheetah
+from hybrid_rl.envs.legs import Legs
 from hybrid_rl.envs.panda_stack import PandaStack
 from hybrid_rl.envs.quadcopter import Quadcopter
 from hybrid_rl.envs.sawyer_torque import SawyerTorque
 from hybrid_rl.rewards.aim import Aim
 from hybrid_rl.run import saved as trained
 from hybrid_rl.tools.view import __main__ as view
-from hybrid_rl.tools.view import push
+from hybrid_rl.tools.view import programs, push
 from hybrid_rl.tools.view.following import Follower
 from hybrid_rl.tools.view.history import History
 from hybrid_rl.tools.view.player import Choice, Player
-from hybrid_rl.tools.view.subject import Source, learner, sliders, with_goals
+from hybrid_rl.tools.view.subject import Source, Subject, learner, sliders, with_goals
 from hybrid_rl.training.episode import Episode
 
 pytestmark = pytest.mark.turns(2)
@@ -88,6 +89,17 @@ def test_sliders_have_the_range_of_their_field():
     for world in (Quadcopter(), QuadcopterSE3()):
         (wind,) = [one for one in sliders("env", world) if one.key == "env.wind"]
         assert (wind.value, wind.least, wind.most) == (0, -5, 5)
+
+
+def test_a_robot_is_told_what_to_do_by_sliders():
+    subject = Subject(Episode(Legs(physics="native"), 1000), {}, frozenset())
+    ranges = [(one.key, one.least, one.most) for one in subject.commands]
+    assert ranges[:2] == [("command.forwards", -1, 1), ("command.left", -0.5, 0.5)]
+    world, command = programs.world(subject.episode, {}), jnp.array([0.7, 0.0, -0.3])
+    state = world.commanded(world.reset(jax.random.key(0)), command)
+    after = world.step({}, state, jnp.zeros(12))
+    np.testing.assert_array_equal([state.obs[-3:], after.obs[-3:]], [command] * 2)
+    assert Subject(Episode(Pendulum()), {}, frozenset()).commands == []
 
 
 def test_bodies_that_episodes_draw_act_in_the_window():
