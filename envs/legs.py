@@ -1,7 +1,8 @@
 """Legs: a robot of any MJCF file walks by command, upright and smoothly.
 
-    r = max(0, e^(-4 |v_xy - c_xy|^2) + e^(-4 (w_z - c_z)^2) / 2 + e^(-|q - q*|^2 / 4) / 2 - v_z^2 / 2
-        - |w_xy|^2 / 20 - 5 |g_xy|^2 - |a - a'|^2 / 20 - P / (10 m g)),    P = sum_i |tau_i q_i'|
+    r = max(0, e^(-4 |v_xy - c_xy|^2) + e^(-4 (w_z - c_z)^2) / 2 + e^(-|q - q*|^2 / 4) / 2
+        - v_z^2 / 2 - |w_xy|^2 / 20 - 5 |g_xy|^2 - |a - a'|^2 / 20 - P / (10 m g))
+    P = sum_i |tau_i q_i'|
 
 c: the command, forwards, to the left [m/s] and to turn [rad/s]; v, w: velocity and angular velocity
 of the base, in its frame; g: the direction of gravity there; q, q*: angles of the motors' joints

@@ -74,34 +74,35 @@ def located(robot: str) -> str:
 def simplified(robot: str) -> str:
     """MJCF text of a robot."""
     spec = mjcf.spec(located(robot))
-    for geom in spec.worldbody.geoms:
-        spec.delete(geom)
     for geom in spec.geoms:
-        if geom.type == MESH and geom.contype | geom.conaffinity:
+        if geom.parent == spec.worldbody:
+            spec.delete(geom)
+        elif geom.type == MESH and geom.contype | geom.conaffinity:
             geom.type = CAPSULE  # fitted to the mesh
+    spec.worldbody.add_geom(name="floor", type=PLANE, size=[0, 0, 1], material="", contype=1)
     model = spec.compile()
-    data = _home(model)
-    for actuator in spec.actuators:
-        _serve(spec, model, actuator)
-    feet = np.zeros(model.ngeom, bool)
+    data, feet = _home(model), np.zeros(model.ngeom, bool)
     if model.jnt_type[0] == FREE:
-        low = np.array([_lowest(model, data, i) for i in range(model.ngeom)])
-        collides = (model.geom_contype | model.geom_conaffinity) > 0
-        feet = collides & (low < low[collides].min() + LEVEL)
-        data.qpos[2] -= low[feet].min()
+        high = [mujoco.mj_geomDistance(model, data, 0, i, 1e3, None) for i in range(model.ngeom)]
+        low = np.where(model.geom_contype | model.geom_conaffinity, high, np.inf)[1:]
+        feet[1:] = low < low.min() + LEVEL
+        data.qpos[2] -= low.min()
+    held, joints = data.ctrl.copy(), model.actuator_trntype == JOINT
+    held[joints] = data.qpos[model.jnt_qposadr[model.actuator_trnid[joints, 0]]]
+    for actuator in np.array(spec.actuators)[joints & (model.actuator_biasprm[:, 1] == 0)]:
+        _serve(spec, model, actuator)
     for body in spec.bodies[1:]:
         body.explicitinertial, body.mass = True, model.body_mass[body.id]
         body.ipos, body.iquat = model.body_ipos[body.id], model.body_iquat[body.id]
         body.inertia, body.fullinertia = model.body_inertia[body.id], np.full(6, np.nan)
-    for i, geom in enumerate(spec.geoms):
+    for i, geom in list(enumerate(spec.geoms))[1:]:
         _draw(spec, model, geom, i, bool(feet[i]))
-    held = np.where(_of_joints(model), data.qpos[_address(model)], data.ctrl)
     for material in spec.materials:
         material.textures = [""] * len(material.textures)
-    unused = (spec.meshes, spec.textures, spec.sensors, spec.keys, spec.pairs)
-    for element in (one for some in unused for one in some):
-        spec.delete(element)
-    _set_scene(spec, model)
+    for some in (spec.meshes, spec.textures, spec.sensors, spec.keys, spec.pairs):
+        for element in some:
+            spec.delete(element)
+    _set_scene(spec, model.stat.extent)
     spec.add_key(name="home", qpos=data.qpos, ctrl=held)
     spec.compile()
     return spec.to_xml()
@@ -113,29 +114,17 @@ def _home(model: mujoco.MjModel) -> mujoco.MjData:
     if model.nkey:
         named = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_KEY, "home")
         mujoco.mj_resetDataKeyframe(model, data, max(named, 0))
-    for joint in np.flatnonzero(model.jnt_limited & (model.nkey == 0)):
-        (low, high), at = model.jnt_range[joint], model.jnt_qposadr[joint]
-        if not low <= data.qpos[at] <= high:
-            data.qpos[at] = (low + high) / 2
+    else:
+        at, (low, high) = model.jnt_qposadr, model.jnt_range.T
+        outside = model.jnt_limited & ((data.qpos[at] < low) | (data.qpos[at] > high))
+        data.qpos[at] = np.where(outside, (low + high) / 2, data.qpos[at])
     mujoco.mj_kinematics(model, data)
     return data
-
-
-def _of_joints(model: mujoco.MjModel) -> np.ndarray:
-    """[nu] whether an actuator moves a joint; others move a tendon, say."""
-    return model.actuator_trntype == JOINT
-
-
-def _address(model: mujoco.MjModel) -> np.ndarray:
-    """[nu] of the joints of the actuators in qpos; 0 without a joint."""
-    return model.jnt_qposadr[np.where(_of_joints(model), model.actuator_trnid[:, 0], 0)]
 
 
 def _serve(spec: mujoco.MjSpec, model: mujoco.MjModel, actuator: mujoco.MjsActuator) -> None:
     """Make a position servo of an actuator that moves a joint by its torque."""
     i = actuator.id
-    if model.actuator_biasprm[i, 1] or not _of_joints(model)[i]:
-        return
     joint, gear = model.actuator_trnid[i, 0], abs(model.actuator_gear[i, 0])
     ranges = [gear * abs(model.actuator_gainprm[i, 0]) * model.actuator_ctrlrange[i, 1]]
     ranges += [gear * model.actuator_forcerange[i, 1], model.jnt_actfrcrange[joint, 1]]
@@ -145,21 +134,6 @@ def _serve(spec: mujoco.MjSpec, model: mujoco.MjModel, actuator: mujoco.MjsActua
     actuator.ctrlrange, actuator.ctrllimited = model.jnt_range[joint], model.jnt_limited[joint]
     own = -model.actuator_biasprm[i, 2] * gear**2
     spec.joints[joint].damping[0] += max(DAMPING * most / OFFSET, own)
-
-
-def _lowest(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> float:
-    """The height [m] of the lowest point of a geom; of an ellipsoid, of the box around it."""
-    down, size = np.abs(data.geom_xmat[geom].reshape(3, 3)[2]), model.geom_size[geom]
-    match mujoco.mjtGeom(model.geom_type[geom]).name:
-        case "mjGEOM_SPHERE":
-            extent = size[0]
-        case "mjGEOM_CAPSULE":
-            extent = size[0] + down[2] * size[1]
-        case "mjGEOM_CYLINDER":
-            extent = size[0] * np.hypot(*down[:2]) + down[2] * size[1]
-        case _:
-            extent = down @ model.geom_aabb[geom, 3:]
-    return float(data.geom_xpos[geom, 2] - extent)
 
 
 def _draw(
@@ -176,24 +150,18 @@ def _draw(
         geom.condim, geom.priority = 3, 1
 
 
-def _set_scene(spec: mujoco.MjSpec, model: mujoco.MjModel) -> None:
-    """A floor, a camera, and options for contacts of feet that all implementations solve alike."""
-    spec.add_texture(
-        name="floor",
-        type=mujoco.mjtTexture.mjTEXTURE_2D,
-        builtin=mujoco.mjtBuiltin.mjBUILTIN_CHECKER,
-        rgb1=[0.36, 0.42, 0.48],
-        rgb2=[0.44, 0.5, 0.56],
-        width=300,
-        height=300,
-    )
+def _set_scene(spec: mujoco.MjSpec, extent: float) -> None:
+    """A chequered floor, a camera, and options with which all implementations agree on feet."""
+    kinds = {"type": mujoco.mjtTexture.mjTEXTURE_2D, "builtin": mujoco.mjtBuiltin.mjBUILTIN_CHECKER}
+    colours = {"rgb1": [0.36, 0.42, 0.48], "rgb2": [0.44, 0.5, 0.56]}
+    spec.add_texture(name="floor", width=300, height=300, **kinds, **colours)
     paint = spec.material("floor") or spec.add_material(name="floor")
     paint.texuniform, paint.texrepeat = True, [1, 1]
     paint.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = "floor"
-    floor = {"name": "floor", "type": PLANE, "size": [0, 0, 1], "material": "floor"}
-    spec.worldbody.add_geom(**floor, contype=1, conaffinity=0)
+    floor = spec.geom("floor")
+    floor.material, floor.contype, floor.conaffinity = "floor", 1, 0
     if CAMERA not in [camera.name for camera in spec.cameras]:
-        mode, far = mujoco.mjtCamLight.mjCAMLIGHT_TRACKCOM, 2.5 * model.stat.extent
+        mode, far = mujoco.mjtCamLight.mjCAMLIGHT_TRACKCOM, 2.5 * extent
         place = {"pos": [0, -far, 0.35 * far], "quat": [0.81, 0.59, 0, 0]}
         spec.bodies[1].add_camera(name=CAMERA, mode=mode, **place)
     option = spec.option
