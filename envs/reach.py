@@ -82,23 +82,20 @@ class Reach(Body):
         """The arm at home, and a pose to reach."""
         model, m = self._body.model, self.spec.act
         home = servos(self._asset, m)
-        low, high = model.jnt_range[model.actuator_trnid[:m, 0]].T.astype(np.float32)
-        unlimited = ~model.jnt_limited[model.actuator_trnid[:m, 0]].astype(bool)
         angles = home.home + jax.random.uniform(key, (m,), jnp.float32, -SPREAD, SPREAD)
-        angles = jnp.where(unlimited, angles, jnp.clip(angles, low, high))
         qpos = jnp.asarray(model.key_qpos[0], jnp.float32)
-        target = jnp.concatenate(self._tip(qpos.at[home.qpos].set(angles)))
+        there = qpos.at[home.qpos].set(jnp.clip(angles, home.low, home.high))
+        target = jnp.concatenate(self._tip(there))
         info = {"target": target, "servos": jnp.asarray(home.home), "action": jnp.zeros(m)}
         data = self._body.reset(qpos, jnp.zeros(model.nv, jnp.float32))
         return self._state(data, info).replace(reward=jnp.float32(0.0))
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state after one decision. action: [m] in [-1, 1]."""
-        action, model, m = jnp.clip(action, -1.0, 1.0), self._body.model, self.spec.act
-        u, limited = state.info["servos"] + STRIDE * action, model.actuator_ctrllimited[:m] > 0
-        low, high = model.actuator_ctrlrange[:m].T.astype(np.float32)
-        u = jnp.where(limited, jnp.clip(u, low, high), u)
-        control = jnp.concatenate((u, jnp.asarray(model.key_ctrl[0, m:], jnp.float32)))
+        action, arm = jnp.clip(action, -1.0, 1.0), servos(self._asset, self.spec.act)
+        u = jnp.clip(state.info["servos"] + STRIDE * action, arm.low, arm.high)
+        gripper = self._body.model.key_ctrl[0, len(u) :].astype(np.float32)
+        control = jnp.concatenate((u, gripper))
         data = self._body.step(state.data, control, STEPS)
         after = self._state(data, state.info | {"servos": u, "action": action})
         change = ((action - state.info["action"]) ** 2).sum()

@@ -35,20 +35,23 @@ CAPSULE, PLANE, MESH = (
 
 
 class Servos(NamedTuple):
-    """The motors of a model: their joints, and their targets at home."""
+    """The motors of a model: their joints, and their targets [rad] at home and in their range."""
 
     qpos: np.ndarray  # [m] addresses
     qvel: np.ndarray  # [m]
-    home: np.ndarray  # [m] [rad]
+    home: np.ndarray  # [m]
+    low: np.ndarray  # [m]
+    high: np.ndarray  # [m]
 
 
 @cache
 def servos(asset: str, count: int | None = None) -> Servos:
     """The first `count` servos of a simplified model; None: all."""
     model = mjcf.load(asset)
-    joints = model.actuator_trnid[:count, 0]
-    home = model.key_ctrl[0, :count].astype(np.float32)
-    return Servos(model.jnt_qposadr[joints], model.jnt_dofadr[joints], home)
+    joints, limited = model.actuator_trnid[:count, 0], model.actuator_ctrllimited[:count] > 0
+    low, high = np.where(limited, model.actuator_ctrlrange[:count].T, [[-np.inf], [np.inf]])
+    angles = (x.astype(np.float32) for x in (model.key_ctrl[0, :count], low, high))
+    return Servos(model.jnt_qposadr[joints], model.jnt_dofadr[joints], *angles)
 
 
 def located(robot: str) -> str:
