@@ -85,8 +85,9 @@ class Legs(Body):
         info = state.info | {"count": count, "action": action}
         after = self._state(data, info)
         low = data.qpos[2] < 0.5 * self._body.model.key_qpos[0, 2]
-        reward = self.reward_of(state.obs, action, after.obs)
-        metrics = {"speed_error": jnp.linalg.norm(after.obs[:2] - state.obs[-3:-1])}
+        before = jnp.concatenate((state.info["action"], _command(state.info)))  # ends its obs
+        reward = self.reward_of(before, action, after.obs)
+        metrics = {"speed_error": jnp.linalg.norm(after.obs[:2] - before[-3:-1])}
         ended = self.ended(after.obs) | low
         return after.replace(reward=reward, terminated=ended, metrics=metrics)
 
@@ -129,8 +130,13 @@ class Legs(Body):
         to_body, motors = inverse(data.qpos[3:7]), servos(self._asset)
         v, down = rotate(to_body, data.qvel[:3]), rotate(to_body, -jnp.eye(3)[2])
         joints = data.qpos[motors.qpos] - motors.home, SPEED * data.qvel[motors.qvel]
-        since = info["count"] - HOLD * jnp.arange(COMMANDS)
-        command = (((since >= 0) & (since < HOLD))[:, None] * info["commands"]).sum(0)
-        obs = jnp.concatenate((v, data.qvel[3:6], down, *joints, info["action"], command))
+        told = info["action"], _command(info)
+        obs = jnp.concatenate((v, data.qvel[3:6], down, *joints, *told))
         zero = jnp.float32(0.0)
         return EnvState(data, obs, zero, metrics={"speed_error": zero}, info=info)
+
+
+def _command(info: dict[str, Array]) -> Array:
+    """The command [3] at this time."""
+    since = info["count"] - HOLD * jnp.arange(COMMANDS)
+    return (((since >= 0) & (since < HOLD))[:, None] * info["commands"]).sum(0)

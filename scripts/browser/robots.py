@@ -178,4 +178,5 @@ def _plain(name: str, asset: str) -> str:
         raise ValueError(
             f"{name}: {asset} is changed after it is compiled; the page cannot do this"
         )
-    return re.sub(r"<!--.*?-->\s*", "", mjcf.text(asset), flags=re.DOTALL)
+    plain = mjcf.text(asset).replace(' input="pos"', "")  # of a servo, new to the page's MuJoCo
+    return re.sub(r"<!--.*?-->\s*", "", plain, flags=re.DOTALL)

@@ -111,6 +111,8 @@ def test_it_stands_and_follows_no_command(env):
         state = jitted(env, "step")(state, jnp.zeros(8))
         assert not state.terminated
     assert 1.9 < state.reward <= 2.0
+    blind = jitted(env, "step")(state.replace(obs=state.obs * 0), jnp.zeros(8))  # as on the page
+    assert blind.reward == pytest.approx(float(state.reward), abs=1e-3)
     np.testing.assert_allclose(state.obs[6:9], [0, 0, -1], atol=0.02)
     assert state.data.qpos[2] > 0.9 * env._body.model.key_qpos[0, 2]
 
