@@ -9,7 +9,7 @@ of the base, in its frame; g: the direction of gravity there; q, q*: angles of t
 now and at home; a: action, the target of each servo, (q - q*) / 0.5 rad; a': the one before; tau:
 torques of the servos [N m]; m g: weight. o = (v, w, g, q - q*, q' / 10, a, c) [12 + 3m].
 
-An episode has four commands, each for 5 s, and begins anew with the first; each entry of one is
+An episode has four commands, each for 5 s, and then the first again; each entry of one is
 uniform within `command`, or with probability 1/2 zero. Start: home, in any direction, pushed at up
 to 0.5 m/s and rad/s; a decision is 0.02 s. An episode terminates when the base tilts by more than
 60 degrees, or sinks below half of its height at home.
@@ -130,8 +130,8 @@ class Legs(Body):
         to_body, motors = inverse(data.qpos[3:7]), servos(self._asset)
         v, down = rotate(to_body, data.qvel[:3]), rotate(to_body, -jnp.eye(3)[2])
         joints = data.qpos[motors.qpos] - motors.home, SPEED * data.qvel[motors.qvel]
-        told = info["action"], _command(info)
-        obs = jnp.concatenate((v, data.qvel[3:6], down, *joints, *told))
+        last = info["action"], _command(info)
+        obs = jnp.concatenate((v, data.qvel[3:6], down, *joints, *last))
         zero = jnp.float32(0.0)
         return EnvState(data, obs, zero, metrics={"speed_error": zero}, info=info)
 

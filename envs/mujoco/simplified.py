@@ -165,8 +165,8 @@ def _set_scene(spec: mujoco.MjSpec, extent: float) -> None:
     floor.material, floor.contype, floor.conaffinity = "floor", 1, 0
     if CAMERA not in [camera.name for camera in spec.cameras]:
         mode, far = mujoco.mjtCamLight.mjCAMLIGHT_TRACKCOM, 2.5 * extent
-        place = {"pos": [0, -far, 0.35 * far], "quat": [0.81, 0.59, 0, 0]}
-        spec.bodies[1].add_camera(name=CAMERA, mode=mode, **place)
+        pose = {"pos": [0, -far, 0.35 * far], "quat": [0.81, 0.59, 0, 0]}
+        spec.bodies[1].add_camera(name=CAMERA, mode=mode, **pose)
     option = spec.option
     option.timestep, option.cone, option.impratio = TIMESTEP, mujoco.mjtCone.mjCONE_PYRAMIDAL, 1
     option.iterations, option.ls_iterations = 8, 16

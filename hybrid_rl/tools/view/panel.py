@@ -35,7 +35,9 @@ class Wishes:
     steps: int = 0  # decisions to take while paused
     again: bool = False  # an episode should begin
     numbers: dict[str, float] = field(default_factory=dict)  # of the goal
-    command: dict[str, float] = field(default_factory=dict)  # of a robot that is told; or nothing
+    command: dict[str, float] = field(
+        default_factory=dict
+    )  # of a robot that follows one; or nothing
     pull: Pull | None = None
 
 
@@ -118,7 +120,7 @@ class Panel:
         )
 
     def command(self, found: Sequence[Slider]) -> None:
-        """Sliders of what the robot is told."""
+        """Sliders of what the robot is to do."""
         with self._command:
             for one in found:
                 self._slider(one, self._wishes.command.__setitem__)

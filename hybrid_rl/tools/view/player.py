@@ -99,8 +99,8 @@ class Player:
         numbers = self._numbers(subject)
         self._key, now = jax.random.split(self._key)
         if self.command and world.commanded:
-            told = [self.command.get(one.key, one.value) for one in subject.commands]
-            self.state = world.commanded(self.state, np.array(told, np.float32))
+            command = [self.command.get(one.key, one.value) for one in subject.commands]
+            self.state = world.commanded(self.state, np.array(command, np.float32))
         self.decided = actor.decide(self.params, numbers, self.state, self._control, now)
         self._control = self.decided.control
         self.state = world.step(numbers, self.state, self.decided.u)

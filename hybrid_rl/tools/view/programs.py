@@ -91,16 +91,16 @@ def world(episode: Episode, numbers: Numbers) -> World:
     like = jax.eval_shape(episode.reset, key)
     u = jax.ShapeDtypeStruct((episode.spec.act,), jnp.float32)
     env: Any = episode.env
-    told = None
+    commanded = None
     if commands := Subject(episode, {}, frozenset()).commands:
-        told = jax.jit(env.commanded).lower(like, jnp.zeros(len(commands))).compile()
+        commanded = jax.jit(env.commanded).lower(like, jnp.zeros(len(commands))).compile()
     return World(
         episode,
         jax.jit(episode.reset).lower(key).compile(),
         jax.jit(step).lower(_arrays(numbers), like, u).compile(),
         jax.jit(scenery.pose_of(episode.env)).lower(like).compile(),
         jax.tree.structure(like),
-        told,
+        commanded,
     )
 
 

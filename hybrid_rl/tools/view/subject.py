@@ -71,7 +71,7 @@ class Subject:
 
     @cached_property
     def commands(self) -> list[Slider]:
-        """What the robot can be told, if its environment has `commands`, and `commanded`."""
+        """The commands of a robot whose environment has `commands`, and `commanded`."""
         each = getattr(self.episode.env, "commands", {}).items()
         return [Slider(f"command.{name}", 0.0, -most, most, most / 20) for name, most in each]
 

@@ -91,7 +91,7 @@ def test_sliders_have_the_range_of_their_field():
         assert (wind.value, wind.least, wind.most) == (0, -5, 5)
 
 
-def test_a_robot_is_told_what_to_do_by_sliders():
+def test_sliders_command_a_robot():
     subject = Subject(Episode(Legs(physics="native"), 1000), {}, frozenset())
     ranges = [(one.key, one.least, one.most) for one in subject.commands]
     assert ranges[:2] == [("command.forwards", -1, 1), ("command.left", -0.5, 0.5)]
