@@ -14,6 +14,7 @@ from hybrid_rl.envs.legs import HOLD, Legs
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.simplified import located, simplified
 from hybrid_rl.errors import UsageError
+from hybrid_rl.types import Spec
 
 LEG = """<body name="{0}" pos="{1} {2} 0">
   <joint name="{0}_hip" axis="0 1 0" range="-1 1" damping="0.1"/>
@@ -90,7 +91,7 @@ def test_a_name_is_a_robot_of_the_menagerie_which_is_never_downloaded(tmp_path, 
     with pytest.raises(UsageError, match="robot=chair: 'chair'"):
         located("chair")
     cache.root = tmp_path
-    assert Legs(robot="table").spec == (36, 8, 0.02, None)
+    assert Legs(robot="table").spec == Spec(36, 8, 0.02)
 
 
 def test_a_file_of_ours_comes_before_one_of_its_name_here(tmp_path, monkeypatch):

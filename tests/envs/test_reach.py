@@ -9,6 +9,7 @@ from worlds import jitted
 
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.reach import STRIDE, Reach
+from hybrid_rl.types import Spec
 
 ARM = """<mujoco>
   <compiler autolimits="true" angle="radian"/>
@@ -38,7 +39,7 @@ def env():
 
 
 def test_the_tip_is_where_the_last_hinge_ends_or_a_site_and_home_is_within_ranges(env):
-    assert env.spec == (4 * 2 + 6, 2, 0.02, None)
+    assert env.spec == Spec(4 * 2 + 6, 2, 0.02)
     for each, tip in ((env, 0.6), (Reach(robot=ARM, site="nail"), 0.7)):
         model = mjcf.load(each._asset)
         np.testing.assert_allclose(model.key_qpos[0], [1.1, 0, 0])
