@@ -86,8 +86,8 @@ def test_it_acts_at_the_observation_predicted_for_then(agent, tmp_path):
     _, rows = moved(replace(agent, controller=Telling()), tmp_path, Counting, lag=0.006)
     half = [row for row in rows if row["obs"][1] % 2 == 0]
     assert all(row["action"] == pytest.approx(0.5 * row["sent"][1]) for row in half)
-    said = [(8 * row["action"][0], row["times"][0]) for row in rows if row["obs"][1] % 2]
-    lags, sent = np.array(said, float).T
+    pairs = [(8 * row["action"][0], row["times"][0]) for row in rows if row["obs"][1] % 2]
+    lags, sent = np.array(pairs, float).T
     assert len(lags) > 10
     assert {*lags} <= {2.0, 3.0, 4.0}  # 1.5 and the age of the observation, in periods of 4 ms
     assert (sent + 0.006 > 0.004 * lags - 0.002).all()
