@@ -1,0 +1,390 @@
+"""Parameters from logs, by least squares on simulated positions (mujoco.sysid), with intervals.
+
+    min over z, s   sum_t |(y_t - y(t; z, s)) / sigma|^2
+
+s: state at the beginning of each window, so that neither noise nor a doubtful speed there counts.
+Several starts of short windows come first, as long ones have local minima; the best go on with long
+ones. sigma of each channel is that of what follows no pattern: r_t^2 - e^2, below.
+
+A 95% interval is of the noise alone. The rest is told by what is left of the residuals without
+noise, e^2 = mean r_t r_{t+k} over 50 ms of lags k: in the logs, and in a second one (`check`), whose
+parameters are not fitted. If e^2 is above 99% of what noise and intervals make, the model does not
+explain the logs. Then the intervals grow by the larger of two ratios: that of the second log's error
+to the predicted one, and that of the distance between the parameters of the two logs, each fitted
+alone, to what noise makes of it (Birge 1932, "The calculation of errors by the method of least
+squares").
+"""
+
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import mujoco
+import numpy as np
+from scipy.special import ndtri
+
+from hybrid_rl import UsageError
+from hybrid_rl.tools.identify import information
+from hybrid_rl.tools.identify.information import Weak
+from hybrid_rl.tools.identify.log import Log
+from hybrid_rl.tools.identify.simulation import SECANT, Motion, measured, simulate, state
+from hybrid_rl.tools.identify.system import System
+
+STARTS, SEARCHED, FINISHED = 6, 8, 2  # starts, iterations of each, and how many go on
+SHORT, LONG = 1.0, 4.0  # [s] of windows
+FINE = 0.005  # secants at the end
+ITERATIONS, TOLERANCE = 30, 1e-4  # of the long windows; relative step that ends them
+DAMPING = 5.0  # factor between dampings that are tried
+NEAR = 0.06  # [s] of the log around a window's begin, for its first state
+LAGS = 5  # of 10 ms: residuals are alike over them, noise is not
+OPEN = 10.0  # of the noise: unit of a position in s; of a speed it is that in 0.1 s
+LOOSE = 0.1  # weight of s in its units: it is almost free
+QUANTILE, LEVEL, DRAWS = 1.96, 0.99, 2000
+INSTALL = "mujoco.sysid: is not there; pip install 'hybrid_rl[identify]'"
+
+
+@dataclass(frozen=True)
+class Held:
+    """What the logs say of the model, the second one above all."""
+
+    error: float  # RMS of the positions without their noise [rad, m]
+    nominal: float  # that of the nominal model
+    expected: float  # that the intervals predict
+    explained: bool
+    widen: float  # factor on the intervals
+
+
+@dataclass(frozen=True)
+class Found:
+    """Identified parameters theta [P]."""
+
+    system: System
+    theta: np.ndarray  # [P]
+    std: np.ndarray  # [P] of the coordinates, by the noise alone
+    weak: list[Weak]
+    noise: np.ndarray  # [n] of each channel
+    error: float  # as Held.error, of the logs themselves
+    held: Held | None
+    shown: list[tuple[Log, np.ndarray]]  # logs, the last one `check`, and simulated [T, n]
+
+    def interval(self, widened: bool = True) -> np.ndarray:
+        """[P, 2] the 95% intervals, within the ranges that were given."""
+        factor = self.held.widen if self.held and widened else 1.0
+        z, half = self.system.z(self.theta), QUANTILE * factor * self.std
+        ends = self.system.theta(np.stack((z - half, z + half)))
+        return np.clip(ends, self.system.low, self.system.high).T
+
+    def ranges(self) -> dict[str, list[float]]:
+        """Name -> [low, high], of all but the delay: `episode.randomise.elements`."""
+        pairs = zip(self.system.names, self.interval().tolist(), strict=True)
+        return {name: pair for name, pair in pairs if name != "delay"}
+
+    def write(self, out: str) -> None:
+        """Write arm.xml, ranges.yaml, identified.json and report.png into a folder."""
+        from hybrid_rl.tools.identify import report
+
+        report.write(self, out)
+
+
+@dataclass(frozen=True)
+class Window:
+    """Part of a log that is simulated at one go."""
+
+    log: Log
+    rows: slice
+    first: np.ndarray  # [nstate] roughly
+
+    @property
+    def t(self) -> np.ndarray:
+        """[T] its times."""
+        return self.log.t[self.rows]
+
+    @property
+    def y(self) -> np.ndarray:
+        """[T, n] what was measured."""
+        return self.log.y[self.rows]
+
+
+class Problem:
+    """Residuals of logs, in windows of some seconds, and their derivatives."""
+
+    def __init__(
+        self, system: System, logs: Sequence[Log], seconds: float, sigma: np.ndarray
+    ) -> None:
+        self.system, self.sigma = system, sigma
+        self.windows = [each for log in logs for each in _windows(system, log, seconds)]
+        h = system.base.opt.timestep
+        self.motions = [
+            Motion(w.log.t, w.log.ctrl, w.first, w.t[0], int(np.ceil(np.ptp(w.t) / h)) + 2)
+            for w in self.windows
+        ]
+        nv = system.base.nv
+        unit = OPEN * np.median(sigma[: system.base.nq])
+        self.units = np.concatenate((np.full(nv, unit), np.full(nv, unit / 0.1)))
+        self.P, self.S = system.size, 2 * nv * len(self.windows)
+        self.y = np.concatenate([(w.y / sigma).ravel() for w in self.windows])
+
+    def simulated(self, z: np.ndarray, s: np.ndarray) -> list[np.ndarray]:
+        """Of each window [B, T, n], for z [B, P] and s [B, W, 2 nv]."""
+        system, made = self.system, {}
+        for row in z:
+            if row.tobytes() not in made:
+                theta = system.theta(row)
+                made[row.tobytes()] = system.model(theta), system.delay(theta)
+        models, delays = zip(*(made[row.tobytes()] for row in z), strict=True)
+        firsts = np.stack([[self._first(w, x) for w, x in enumerate(row)] for row in s])
+        x, sensors = simulate(models, delays, self.motions, firsts)
+        W = len(self.windows)
+        return [
+            measured(system, x[w::W], sensors[w::W], window.t[0], window.t)
+            for w, window in enumerate(self.windows)
+        ]
+
+    def _first(self, w: int, s: np.ndarray) -> np.ndarray:
+        """The first state of a window, moved by s [2 nv] in its units."""
+        model, first = self.system.base, self.windows[w].first.copy()
+        nq, nv = model.nq, model.nv
+        qpos, moved = first[1 : 1 + nq].copy(), s * self.units
+        mujoco.mj_integratePos(model, qpos, moved[:nv], 1.0)
+        first[1 : 1 + nq] = qpos
+        first[1 + nq : 1 + nq + nv] += moved[nv:]
+        return first
+
+    def residuals(self, x: np.ndarray) -> np.ndarray:
+        """[B, N + S] for x [B, P + S]: of the log, and of s."""
+        s = x[:, self.P :].reshape(len(x), len(self.windows), -1)
+        y = self.simulated(x[:, : self.P], s)
+        flat = np.concatenate([(each / self.sigma).reshape(len(x), -1) for each in y], axis=1)
+        r = np.nan_to_num(flat - self.y, nan=1e4, posinf=1e4, neginf=-1e4)
+        return np.concatenate((np.clip(r, -1e4, 1e4), LOOSE * x[:, self.P :]), axis=1)
+
+    def jacobian(self, x: np.ndarray, step: float) -> np.ndarray:
+        """[N + S, P + S] by central secants; all windows move their first states at once."""
+        P, W, each = self.P, len(self.windows), self.S // len(self.windows)
+        low, high = self.system.z(self.system.low), self.system.z(self.system.high)
+        rows = []
+        for i in range(P):
+            up, down = x.copy(), x.copy()
+            up[i], down[i] = min(x[i] + step, high[i]), max(x[i] - step, low[i])
+            rows += [up, down]
+        for j in range(each):
+            for sign in (0.5, -0.5):
+                moved = x.copy()
+                moved[P + j :: each] += sign
+                rows.append(moved)
+        rows = np.stack(rows)
+        r = self.residuals(rows)
+        d = (r[::2] - r[1::2]).T
+        J = np.zeros((d.shape[0], P + self.S))
+        J[:, :P] = d[:, :P] / (rows[0 : 2 * P : 2] - rows[1 : 2 * P : 2])[range(P), range(P)]
+        ends = np.cumsum([0, *(w.y.size for w in self.windows)])
+        for w in range(W):
+            at = slice(ends[w], ends[w + 1])
+            J[at, P + each * w : P + each * (w + 1)] = d[at, P:]
+        J[len(self.y) + np.arange(self.S), P + np.arange(self.S)] = LOOSE
+        return J
+
+    def without_states(self, J: np.ndarray) -> np.ndarray:
+        """[N + S, P] the part of the derivatives by z that no choice of s would make."""
+        q = np.linalg.qr(J[:, self.P :])[0]
+        return J[:, : self.P] - q @ (q.T @ J[:, : self.P])
+
+    def split(self, flat: np.ndarray) -> list[np.ndarray]:
+        """What is of the log in [N + S, ...], of each window [T, n, ...]."""
+        ends = np.cumsum([w.y.size for w in self.windows])
+        parts = np.split(flat[: ends[-1]], ends[:-1])
+        return [
+            part.reshape(*w.y.shape, *flat.shape[1:])
+            for part, w in zip(parts, self.windows, strict=True)
+        ]
+
+    def covariance(self, flat: np.ndarray) -> np.ndarray:
+        """[n] mean r_t r_{t+k}: the squared residuals without their noise, in units of sigma."""
+        pairs = [(r[k:] * r[:-k]).mean(0) for r in self.split(flat) for k in range(1, LAGS + 1)]
+        return np.mean(pairs, axis=0)
+
+    @property
+    def chance(self) -> float:
+        """Standard deviation of the mean of `covariance` if there is noise alone."""
+        return 1 / np.sqrt(LAGS * len(self.y))
+
+
+def _windows(system: System, log: Log, seconds: float) -> list[Window]:
+    """Windows of about `seconds`, of equal length."""
+    count = max(round(np.ptp(log.t) / seconds), 1)
+    edges = np.searchsorted(log.t, np.linspace(log.t[0], log.t[-1], count + 1))
+    edges[-1] = len(log.t) - 1
+    return [
+        Window(log, slice(a, b + 1), _rough(system, log, a))
+        for a, b in zip(edges[:-1], edges[1:], strict=True)
+    ]
+
+
+def _rough(system: System, log: Log, row: int) -> np.ndarray:
+    """The state [nstate] at a row, by a parabola through the positions around it."""
+    s = log.t - log.t[row]
+    near = abs(s) <= max(NEAR, 3 * np.median(np.diff(log.t)))
+    powers = np.stack((np.ones(near.sum()), s[near], s[near] ** 2), axis=1)
+    q, rate, _ = np.linalg.lstsq(powers, log.q[near], rcond=None)[0]
+    qvel = np.zeros(system.base.nv)
+    mujoco.mj_differentiatePos(system.base, qvel, 1e-3, q, q + 1e-3 * rate)
+    return state(system.base, q, qvel)
+
+
+def fit(
+    system: System,
+    logs: Sequence[Log],
+    check: Log | None = None,
+    starts: int = STARTS,
+    seed: int = 0,
+) -> Found:
+    """Parameters that explain logs; check: another log, which says what to think of them.
+
+    Raises:
+        UsageError: without the extra `identify`.
+    """
+    toolbox = sysid()
+    n = system.base.nq + sum(int(system.base.sensor(name).dim[0]) for name in system.sensors)
+    sigma = np.full(n, system.noise)
+    sigma[system.base.nq :] = np.concatenate([log.y[:, system.base.nq :] for log in logs]).std(0)
+    short = Problem(system, logs, SHORT, sigma)
+    begins = [system.nominal, *system.draw(max(starts - 1, 0), seed)]
+    tried = [_solved(toolbox, short, system.z(theta), SECANT, SEARCHED) for theta in begins]
+    best = sorted(tried, key=lambda each: each[1])[:FINISHED]
+    for step in (SECANT, FINE):  # sigma of the first, too
+        long = Problem(system, logs, LONG, sigma)
+        ends = [_solved(toolbox, long, x[: long.P], step, ITERATIONS) for x, _ in best]
+        best = sorted(ends, key=lambda each: each[1])[: 1 if step == SECANT else None]
+        x, _ = best[0]
+        r = long.residuals(x[None])[0]
+        own = long.covariance(r)
+        squares = sum((part**2).sum(0) for part in long.split(r)) / (len(long.y) / n)
+        sigma = sigma * np.sqrt(np.maximum(squares - own, 1e-12))
+    final = Problem(system, logs, LONG, sigma)
+    solution = _Solution(final, x)
+    held = None if check is None else _held(toolbox, solution, check, sigma)
+    theta = system.theta(x[: final.P])
+    shown = [(log, _shown(toolbox, system, theta, log, sigma)) for log in (*logs, check) if log]
+    error = _rms(final.covariance(solution.r), sigma, system)
+    std = np.sqrt(np.diag(solution.covariance))
+    return Found(system, theta, std, solution.weak, sigma, error, held, shown)
+
+
+class _Solution:
+    """A minimum, and what is known there."""
+
+    def __init__(self, problem: Problem, x: np.ndarray) -> None:
+        self.problem, self.x = problem, x
+        self.r, self.J = problem.residuals(x[None])[0], problem.jacobian(x, FINE)
+
+    @cached_property
+    def information(self) -> np.ndarray:
+        """[P, P] of z, whatever the states at the beginning were."""
+        J = self.problem.without_states(self.J)
+        return J.T @ J
+
+    @property
+    def covariance(self) -> np.ndarray:
+        """[P, P] of z."""
+        return information.covariance(self.problem.system, self.information)
+
+    @property
+    def weak(self) -> list[Weak]:
+        """Directions that the logs leave open."""
+        return information.weak(self.problem.system, self.information)
+
+
+def _held(toolbox: Any, solution: _Solution, check: Log, sigma: np.ndarray) -> Held:
+    """Judge a fit by another log."""
+    system, P = solution.problem.system, solution.problem.P
+    problem = Problem(system, [check], LONG, sigma)
+    x, _ = _solved(toolbox, problem, solution.x[:P], FINE, 8, fixed=True)
+    nominal, _ = _solved(toolbox, problem, system.z(system.nominal), FINE, 8, fixed=True)
+    found, known = (problem.covariance(problem.residuals(each[None])[0]) for each in (x, nominal))
+    J = problem.without_states(problem.jacobian(x, FINE))[: len(problem.y)]
+    root = J @ np.linalg.cholesky(solution.covariance)  # [N, P]
+    random = np.random.default_rng(0)
+    draws = ((root @ random.normal(size=(P, DRAWS))) ** 2).mean(0)
+    predicted = draws + problem.chance * random.normal(size=DRAWS)
+    e2, own = float(found.mean()), solution.problem.covariance(solution.r).mean()
+    unlikely = float(ndtri(LEVEL)) * solution.problem.chance
+    explained = bool(e2 <= np.quantile(predicted, LEVEL) and own <= unlikely)
+    widen = 1.0
+    if not explained:
+        alone, _ = _solved(toolbox, problem, solution.x[:P], FINE, ITERATIONS)
+        other = _Solution(problem, alone)
+        apart = solution.x[:P] - alone[:P]
+        birge = apart @ np.linalg.solve(solution.covariance + other.covariance, apart) / P
+        widen = float(np.sqrt(max(1.0, e2 / draws.mean(), birge)))
+    n = system.base.nq
+    expected = float(np.sqrt(draws.mean()) * np.sqrt((sigma[:n] ** 2).mean()))
+    return Held(_rms(found, sigma, system), _rms(known, sigma, system), expected, explained, widen)
+
+
+def _rms(covariance: np.ndarray, sigma: np.ndarray, system: System) -> float:
+    """RMS error of the positions, of squares in units of sigma [n]."""
+    n = system.base.nq
+    return float(np.sqrt(max((covariance[:n] * sigma[:n] ** 2).mean(), 0.0)))
+
+
+def _shown(
+    toolbox: Any, system: System, theta: np.ndarray, log: Log, sigma: np.ndarray
+) -> np.ndarray:
+    """What the model with theta does in a log [T, n]."""
+    problem = Problem(system, [log], LONG, sigma)
+    x, _ = _solved(toolbox, problem, system.z(theta), FINE, 8, fixed=True)
+    s = x[problem.P :].reshape(1, len(problem.windows), -1)
+    result = np.zeros_like(log.y)
+    for window, y in zip(problem.windows, problem.simulated(x[None, : problem.P], s), strict=True):
+        result[window.rows] = y[0]
+    return result
+
+
+def _solved(
+    toolbox: Any, problem: Problem, z: np.ndarray, step: float, most: int, fixed: bool = False
+) -> tuple[np.ndarray, float]:
+    """The minimum x [P + S] from z, and its cost; fixed: over the first states alone."""
+    system, P = problem.system, problem.P
+    low, high = system.z(system.low), system.z(system.high)
+    edge = 2e-3 * (high - low)  # the toolbox warns of a start nearer to an end
+    z = np.clip(z, low + edge, high - edge)
+    unknown = toolbox.ParameterDict()
+    for name, value, least, greatest in zip(system.names, z, low, high, strict=True):
+        own = toolbox.Parameter(name, float(value), float(least), float(greatest), frozen=fixed)
+        unknown.add(own)
+    s = np.zeros(problem.S)
+    unknown.add(toolbox.Parameter("first states", s, s - 1e3, s + 1e3))
+    free = slice(P if fixed else 0, None)
+
+    def whole(x: np.ndarray) -> np.ndarray:
+        return np.concatenate((z, x)) if fixed else x
+
+    def residual(x: np.ndarray, _: Any) -> tuple[list[np.ndarray], None, None]:
+        return [problem.residuals(whole(x.ravel())[None]).T], None, None
+
+    _, result = toolbox.optimize(
+        unknown,
+        residual,
+        verbose=False,
+        max_iters=most,
+        jacobian=lambda x, _: problem.jacobian(whole(x.ravel()), step)[:, free],
+        output=io.StringIO(),
+        x_scale="jac",
+        xtol=TOLERANCE,
+        mu_factor=DAMPING,
+    )
+    x = whole(np.asarray(result.x, float).ravel())
+    return x, float((problem.residuals(x[None]) ** 2).sum())
+
+
+def sysid() -> Any:
+    """MuJoCo's toolbox, whose module is empty where a package that it needs is missing."""
+    from mujoco import sysid as toolbox
+
+    try:
+        _ = toolbox.optimize
+    except AttributeError as error:
+        raise UsageError(INSTALL) from error
+    return toolbox
