@@ -23,7 +23,7 @@ FOLDER = Path(__file__).parents[1] / "assets"
 FIELDS = (  # of MjModel that an episode may have for itself; MJX takes others as constants
     *("body_mass", "body_inertia", "body_ipos", "geom_friction", "pair_friction", "dof_damping"),
     *("dof_armature", "jnt_stiffness", "actuator_gainprm", "actuator_biasprm", "actuator_gear"),
-    "opt.gravity",
+    *("dof_frictionloss", "actuator_forcerange", "opt.gravity"),
 )
 FOR_SENSORS = ("cacc", "cfrc_int", "cfrc_ext")  # fields of MjData, for these sensors:
 DYNAMIC = [

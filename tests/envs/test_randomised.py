@@ -4,9 +4,11 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+import yaml
 from worlds import make
 
 from hybrid_rl.envs.halfcheetah import HalfCheetah
+from hybrid_rl.errors import UsageError
 from hybrid_rl.training.episode import Episode
 
 FIXED = {"mass": [1.5, 1.5], "friction": [0.5, 0.5], "motors": [0.8, 0.8], "payload": [0.4, 0.4]}
@@ -54,3 +56,34 @@ def test_each_episode_and_each_motor_has_its_own_and_keeps_it():
 def test_a_range_from_high_to_low_is_refused():
     with pytest.raises(ValueError, match=r"randomise.mass=.*: must be \[low, high\]"):
         Episode(make("cartpole"), randomise={"mass": (2, 1)})
+
+
+def test_elements_have_their_own_values_whatever_form_they_are_given_in(tmp_path):
+    plain = make("halfcheetah", "native")
+    ranges = {
+        "joint.back_thigh.damping": [7.0, 7.0],
+        "joint.front_shin.frictionloss": [0.5, 0.5],
+        "body.back_foot.mass": [2.0, 2.0],
+        "actuator.back_thigh.gain": [0.5, 0.5],
+    }
+    (tmp_path / "ranges.yaml").write_text(yaml.safe_dump(ranges))
+    file = Episode(plain, randomise={"elements": str(tmp_path / "ranges.yaml")})
+    episode = Episode(plain, randomise={"elements": ranges})
+    assert hash(episode.randomise) == hash(file.randomise)
+    fields, model = episode.reset(jax.random.key(0)).data.fields, plain._body.model
+    foot, thigh = model.body("back_foot").id, model.joint("back_thigh").dofadr[0]
+    assert fields["dof_damping"][thigh] == 7.0
+    assert fields["dof_frictionloss"][model.joint("front_shin").dofadr[0]] == 0.5
+    heavier = 2 / model.body_mass[foot] * model.body_inertia[foot]
+    np.testing.assert_allclose(fields["body_inertia"][foot], heavier, rtol=1e-6)
+    gains = np.array(model.actuator_gainprm[:, 0])
+    gains[model.actuator("back_thigh").id] *= 0.5
+    np.testing.assert_allclose(fields["actuator_gainprm"][:, 0], gains, rtol=1e-6)
+    assert np.abs(states(file) - states(Episode(plain))).max() > 0.01
+
+
+def test_an_element_that_the_model_lacks_is_refused():
+    with pytest.raises(UsageError, match=r"elements: joint.knee.damping: must name an element"):
+        Episode(make("cartpole"), randomise={"elements": {"joint.knee.damping": [1, 2]}}).reset(
+            jax.random.key(0)
+        )
