@@ -2,13 +2,14 @@
 
     python -m scripts.identify_transfer plants=10 out=identify_transfer.json
 
-A vertical link with a motor and a load turns to an angle and holds it. Each hidden arm has a heavier
-load, more friction and damping, a weaker motor and a delay, drawn from FACTORS, RANGES and DELAY. A policy (SAC) is trained
+A vertical link with a motor and a load turns to an angle and holds it. Each hidden arm has a
+heavier load, more friction and damping, a weaker motor and a delay, drawn from FACTORS, RANGES and
+DELAY. A policy (SAC) is trained
 
     nominal      on the model as its file has it
     wide         on another arm of these ranges in each episode
-    identified   on the model that `identify` finds from four seconds of sines on the hidden arm, and
-                 on its intervals (`episode.randomise.elements`)
+    identified   on the model that `identify` finds from four seconds of sines on the hidden arm,
+                 and on its intervals (`episode.randomise.elements`)
     hidden       on the hidden arm itself: what a perfect model would give
 
 and acts on the hidden arm, 64 episodes each.
@@ -40,6 +41,7 @@ ARGUMENTS = (
     arguments.Argument("first", 0, "number of the first one", arguments.whole(least=0)),
     arguments.Argument("seeds", 3, "policies of each kind", arguments.whole()),
     arguments.Argument("steps", 5000, "decisions of each", arguments.whole()),
+    arguments.Argument("hidden", False, "true: also policies of the fourth kind", arguments.flag),
     arguments.Argument("out", "identify_transfer.json", "written after every policy"),
 )
 DECISION, STEPS = 0.04, 50  # [s], and decisions of an episode
@@ -166,7 +168,7 @@ def main() -> None:
         other = identify.excite(arm, "babble", 4.0, seed=1000 + k)
         check, _ = played(arm, other, theta, "right", 2 * k + 1)
         found = identify.fit(arm, [log], check, seed=k)
-        found.write(str(folder / f"found_{k}"))
+        identify.write(found, folder / f"found_{k}")
         low, high = found.interval()[arm.names.index("delay")].tolist()
         loaded = {
             **shared,
@@ -175,10 +177,10 @@ def main() -> None:
                 **{"randomise": {"elements": str(folder / f"found_{k}/ranges.yaml")}},
                 **{"delay": low, "jitter": high - low},
             ),
-            "hidden": trained(
-                *(Reach(str(hidden)), seeds, steps, folder / f"best_{k}"), delay=arm.delay(theta)
-            ),
         }
+        if given["hidden"]:
+            own = Reach(str(hidden)), seeds, steps, folder / f"best_{k}"
+            loaded["hidden"] = trained(*own, delay=arm.delay(theta))
         row = {name: returns(each, seeds, plant) for name, each in loaded.items()}
         error = (found.theta / np.maximum(theta, 1e-3) - 1).tolist()
         described = {"plant": k, "theta": theta.tolist(), "relative": error}

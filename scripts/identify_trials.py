@@ -7,7 +7,7 @@ truth with 1 mrad of noise, fits, and is judged on a babble of four seconds that
 excitations. `error` is without noise, from the same state. The kinds of truths:
 
     right      the model with other parameters
-    stribeck   friction 50% higher at rest, centre of mass of the last link 6% away: not in the model
+    stribeck   friction 50% higher at rest, centre of mass of the last link 6% away: in no model
     clock      the log's clock runs 2% fast
     jitter     each command arrives up to 10 ms later than written
     servo      the known gain of the first servo is 20% wrong
@@ -26,7 +26,9 @@ import mujoco
 import numpy as np
 
 from hybrid_rl import arguments, command, identify
+from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.tools.identify import simulation
+from hybrid_rl.tools.identify.excitation import Plan
 
 ARGUMENTS = (
     arguments.Argument("arm", "two_link", "two_link or sawyer"),
@@ -72,12 +74,13 @@ UNKNOWN = {  # of the two links; ranges of half and 1 / 0.6 of the nominal value
         *("actuator.j1.gain", "actuator.j3.gain", "body.rod.mass"),
     ),
 }
+SPEEDS = (1.74, 1.328, 1.957, 1.957, 3.485, 3.485, 4.545)  # [rad/s] of Sawyer
 LIMITS = {
     "two_link": {
         "shoulder": {"position": [-1.5, 1.5], "velocity": 6},
         "elbow": {"position": [-1.5, 1.5], "velocity": 8},
     },
-    "sawyer": {f"j{i}": {"velocity": v} for i, v in enumerate((1.74, 1.328, 1.957, 1.957, 3.485, 3.485, 4.545))},  # noqa: E501
+    "sawyer": {f"j{i}": {"velocity": v} for i, v in enumerate(SPEEDS)},
 }
 
 
@@ -85,7 +88,7 @@ def system(arm: str, folder: Path) -> identify.System:
     """An arm and its unknown parameters: a factor of exp(-0.5) to exp(0.5) about the nominal."""
     file = folder / f"{arm}.xml"
     file.write_text(TWO_LINK if arm == "two_link" else sawyer())
-    model = identify.read(file, {name: None for name in UNKNOWN[arm]}).nominal
+    model = identify.read(file, dict.fromkeys(UNKNOWN[arm])).nominal
     ranges: dict[str, Any] = {
         name: [float(v * np.exp(-0.5)), float(v * np.exp(0.5))]
         for name, v in zip(UNKNOWN[arm], model, strict=True)
@@ -96,12 +99,7 @@ def system(arm: str, folder: Path) -> identify.System:
 
 def sawyer() -> str:
     """The library's Sawyer with position servos, friction in its joints and a payload."""
-    import hybrid_rl as hr
-
-    base = Path(hr.Physics("sawyer.xml").asset)
-    from hybrid_rl.envs.mujoco import mjcf
-
-    spec = mujoco.MjSpec.from_file(str(mjcf.path(str(base))))
+    spec = mjcf.spec("sawyer.xml")
     spec.option.timestep = 0.002
     torque, kp = (80, 80, 40, 40, 9, 9, 9), (800, 800, 300, 300, 60, 60, 20)
     for i in range(7):
@@ -116,7 +114,7 @@ def sawyer() -> str:
 
 
 def played(
-    arm: identify.System, plan: identify.Plan, theta: np.ndarray, kind: str, seed: int
+    arm: identify.System, plan: Plan, theta: np.ndarray, kind: str, seed: int
 ) -> tuple[identify.Log, np.ndarray]:
     """The log of a truth, and its states [S + 1, nstate]."""
     random, h = np.random.default_rng(seed), arm.base.opt.timestep
@@ -191,13 +189,12 @@ def trial(job: tuple[str, str, str, float, int, int]) -> dict[str, Any]:
         judged = found.held
         assert judged is not None
         return {
-            **{"arm": name, "kind": kind, "how": how, "truth": k, "seconds": seconds, "relative": relative},
-            **{"error": error, "inside": inside[0], "inside_widened": inside[1]},
-            **{"std": found.std.tolist(), "deviations": plan.deviations.tolist()},
-            **{"log_det": float(-2 * np.log(plan.deviations).sum()), "mismatch": plan.mismatch},
-            **{"held": judged.error, "nominal": judged.nominal, "expected": judged.expected},
-            **{"explained": judged.explained, "widen": judged.widen, "own": found.error},
-            **{"limit": float(used), "planned_s": planned, "fitted_s": fitted},
+            **dict(zip(("arm", "kind", "how", "seconds", "truth", "starts"), job, strict=True)),
+            **{"relative": relative, "error": float(error), "own": found.error},
+            **{"inside": inside[0], "inside_widened": inside[1], "std": found.std.tolist()},
+            **{"deviations": plan.deviations.tolist(), "mismatch": plan.mismatch},
+            **{"held": vars(judged), "limit": float(used)},
+            **{"planned_s": planned, "fitted_s": fitted},
             "weak": [each.text for each in found.weak],
         }
 

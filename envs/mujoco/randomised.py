@@ -27,7 +27,6 @@ from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.errors import UsageError
 from hybrid_rl.fields import FieldError, NotNegative, Positive, part
 
-
 FACTORS = ("mass", "friction", "damping", "motors", "payload")
 ELEMENTS = {  # ELEMENT.FIELD -> fields of MjModel that get the value, or are multiplied
     **{f"joint.{name}": (f"dof_{name}",) for name in ("damping", "frictionloss", "armature")},

@@ -23,8 +23,6 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from hybrid_rl import UsageError, arguments, command
 from hybrid_rl.tools.identify import excitation, fitting, log, playing, report
 from hybrid_rl.tools.identify.system import System, read
@@ -94,7 +92,7 @@ def main() -> None:
 
 def made(name: str) -> Any:
     """The robot of MODULE:CLASS."""
-    module, colon, kind = name.partition(":")
+    module, _, kind = name.partition(":")
     sys.path.insert(0, str(Path.cwd()))
     try:
         return getattr(importlib.import_module(module), kind)()

@@ -18,8 +18,15 @@ from pathlib import Path
 import numpy as np
 
 from hybrid_rl import UsageError
-from hybrid_rl.tools.identify import information
-from hybrid_rl.tools.identify.information import Weak
+from hybrid_rl.tools.identify.information import (
+    Weak,
+    columns,
+    covariance,
+    jacobian,
+    mismatch,
+    weak,
+    widths,
+)
 from hybrid_rl.tools.identify.simulation import SECANT, Motion, measured, simulate, start
 from hybrid_rl.tools.identify.system import System
 
@@ -59,7 +66,8 @@ def _sines(t: np.ndarray, nu: int, random: np.random.Generator) -> np.ndarray:
 
 def _chirp(t: np.ndarray, nu: int, random: np.random.Generator) -> np.ndarray:
     last, phase = random.uniform(2.0, 4.0, nu), random.uniform(0, 2 * np.pi, nu)
-    return np.sin(2 * np.pi * (0.2 * t[:, None] + (last - 0.2) / 2 * t[:, None] ** 2 / t[-1]) + phase)
+    cycles = 0.2 * t[:, None] + (last - 0.2) / 2 * t[:, None] ** 2 / t[-1]
+    return np.sin(2 * np.pi * cycles + phase)
 
 
 def _steps(t: np.ndarray, nu: int, random: np.random.Generator) -> np.ndarray:
@@ -107,7 +115,7 @@ class _Search:
         self.low = np.where(given, model.actuator_ctrlrange[:, 0], -1.0)
         self.high = np.where(given, model.actuator_ctrlrange[:, 1], 1.0)
         self.half = np.maximum(self.high - self.rest, self.rest - self.low)
-        self.models, self.delays = information.columns(system, system.nominal)
+        self.models, self.delays = columns(system, system.nominal)
         self.tested = len(self.models)  # the rest are draws
         drawn = system.draw(DRAWS, seed=1)
         self.drawn = [system.model(theta) for theta in drawn]
@@ -157,15 +165,15 @@ class _Search:
         motion, system = self.motion(t, u - self.rest), self.system
         x, sensors = simulate(self.models[:1], self.delays[:1], [motion])
         q = measured(system, x, sensors, 0.0, t)[0]
-        J, others = information.jacobian(system, system.nominal, motion, t)
+        J, others = jacobian(system, system.nominal, motion, t)
         forces = J.T @ J / system.noise**2
         return Plan(
             t,
             motion.ctrl,
             q[:, : system.base.nq],
-            np.sqrt(np.diag(information.covariance(system, forces))),
-            information.weak(system, forces),
-            float(information.mismatch(system, J, others)),
+            np.sqrt(np.diag(covariance(system, forces))),
+            weak(system, forces),
+            float(mismatch(system, J, others)),
             float(self.used(x)[0]),
         )
 
@@ -175,7 +183,7 @@ class _Search:
         models = [*self.models, *self.drawn[: DRAWS // 4]]
         delays = [*self.delays, *self.drawn_delays[: DRAWS // 4]]
         firsts = np.stack([self.first] * len(models))
-        known = np.diag(1 / information.widths(system) ** 2)
+        known = np.diag(1 / widths(system) ** 2)
         done, last = np.zeros((0, nu)), np.zeros(nu)
         while len(done) < len(t):
             now = t[len(done) : len(done) + round(SEGMENT / DT)]
@@ -228,7 +236,7 @@ class _Search:
         y = measured(system, x[:tested], sensors[:tested], now[0], now + DT)
         y = y.reshape(*y.shape[:2], -1)  # [1 + P + 1, C, N]
         J = np.moveaxis((y[1:] - y[0]) / SECANT, 0, -1)  # [C, N, P + 1]
-        wrong = information.mismatch(system, J[..., :P], J[..., P])
+        wrong = mismatch(system, J[..., :P], J[..., P])
         J = np.nan_to_num(J[..., :P]) / system.noise
         gains = J.swapaxes(1, 2) @ J
         scores = np.linalg.slogdet(known + gains)[1]

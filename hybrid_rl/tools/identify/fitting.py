@@ -7,18 +7,18 @@ Several starts of short windows come first, as long ones have local minima; the 
 ones. sigma of each channel is that of what follows no pattern: r_t^2 - e^2, below.
 
 A 95% interval is of the noise alone. The rest is told by what is left of the residuals without
-noise, e^2 = mean r_t r_{t+k} over 50 ms of lags k: in the logs, and in a second one (`check`), whose
-parameters are not fitted. If e^2 is above 99% of what noise and intervals make, the model does not
-explain the logs. Then the intervals grow by the larger of two ratios: that of the second log's error
-to the predicted one, and that of the distance between the parameters of the two logs, each fitted
-alone, to what noise makes of it (Birge 1932, "The calculation of errors by the method of least
-squares").
+noise, e^2 = mean r_t r_{t+k} over LAGS lags k: in the logs, and in a second one (`check`), which is
+not fitted. If e^2 is above 99% of what noise and intervals make, the model does not explain the
+logs. Then the intervals grow by the larger of two ratios: that of the second log's error to the
+predicted one, and that of the distance between the parameters of the two logs, each fitted alone,
+to what noise makes of it (Birge 1932, "The calculation of errors by the method of least squares").
 """
 
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import mujoco
@@ -26,8 +26,7 @@ import numpy as np
 from scipy.special import ndtri
 
 from hybrid_rl import UsageError
-from hybrid_rl.tools.identify import information
-from hybrid_rl.tools.identify.information import Weak
+from hybrid_rl.tools.identify.information import Weak, covariance, weak
 from hybrid_rl.tools.identify.log import Log
 from hybrid_rl.tools.identify.simulation import SECANT, Motion, measured, simulate, state
 from hybrid_rl.tools.identify.system import System
@@ -38,11 +37,11 @@ FINE = 0.005  # secants at the end
 ITERATIONS, TOLERANCE = 30, 1e-4  # of the long windows; relative step that ends them
 DAMPING = 5.0  # factor between dampings that are tried
 NEAR = 0.06  # [s] of the log around a window's begin, for its first state
-LAGS = 5  # of 10 ms: residuals are alike over them, noise is not
+LAGS = 5  # rows over which residuals are alike, but not their noise
 OPEN = 10.0  # of the noise: unit of a position in s; of a speed it is that in 0.1 s
 LOOSE = 0.1  # weight of s in its units: it is almost free
 QUANTILE, LEVEL, DRAWS = 1.96, 0.99, 2000
-INSTALL = "mujoco.sysid: is not there; pip install 'hybrid_rl[identify]'"
+INSTALL = 'mujoco.sysid is empty: pip install "hybrid_rl[identify]"'
 
 
 @dataclass(frozen=True)
@@ -77,15 +76,14 @@ class Found:
         return np.clip(ends, self.system.low, self.system.high).T
 
     def ranges(self) -> dict[str, list[float]]:
-        """Name -> [low, high], of all but the delay: `episode.randomise.elements`."""
-        pairs = zip(self.system.names, self.interval().tolist(), strict=True)
-        return {name: pair for name, pair in pairs if name != "delay"}
+        """Name -> [low, high] for `episode.randomise.elements` of the written model.
 
-    def write(self, out: str) -> None:
-        """Write arm.xml, ranges.yaml, identified.json and report.png into a folder."""
-        from hybrid_rl.tools.identify import report
-
-        report.write(self, out)
+        Gains are factors on its own; the delay is none of them: episode.delay and jitter.
+        """
+        gains = np.array([name.endswith(".gain") for name in self.system.names])
+        pairs = self.interval() / np.where(gains, self.theta, 1.0)[:, None]
+        named = zip(self.system.names, pairs.tolist(), strict=True)
+        return {name: pair for name, pair in named if name != "delay"}
 
 
 @dataclass(frozen=True)
@@ -200,14 +198,14 @@ class Problem:
             for part, w in zip(parts, self.windows, strict=True)
         ]
 
-    def covariance(self, flat: np.ndarray) -> np.ndarray:
+    def alike(self, flat: np.ndarray) -> np.ndarray:
         """[n] mean r_t r_{t+k}: the squared residuals without their noise, in units of sigma."""
         pairs = [(r[k:] * r[:-k]).mean(0) for r in self.split(flat) for k in range(1, LAGS + 1)]
         return np.mean(pairs, axis=0)
 
     @property
     def chance(self) -> float:
-        """Standard deviation of the mean of `covariance` if there is noise alone."""
+        """Standard deviation of the mean of `alike` if there is noise alone."""
         return 1 / np.sqrt(LAGS * len(self.y))
 
 
@@ -216,10 +214,7 @@ def _windows(system: System, log: Log, seconds: float) -> list[Window]:
     count = max(round(np.ptp(log.t) / seconds), 1)
     edges = np.searchsorted(log.t, np.linspace(log.t[0], log.t[-1], count + 1))
     edges[-1] = len(log.t) - 1
-    return [
-        Window(log, slice(a, b + 1), _rough(system, log, a))
-        for a, b in zip(edges[:-1], edges[1:], strict=True)
-    ]
+    return [Window(log, slice(a, b + 1), _rough(system, log, a)) for a, b in pairwise(edges)]
 
 
 def _rough(system: System, log: Log, row: int) -> np.ndarray:
@@ -259,7 +254,7 @@ def fit(
         best = sorted(ends, key=lambda each: each[1])[: 1 if step == SECANT else None]
         x, _ = best[0]
         r = long.residuals(x[None])[0]
-        own = long.covariance(r)
+        own = long.alike(r)
         squares = sum((part**2).sum(0) for part in long.split(r)) / (len(long.y) / n)
         sigma = sigma * np.sqrt(np.maximum(squares - own, 1e-12))
     final = Problem(system, logs, LONG, sigma)
@@ -267,7 +262,7 @@ def fit(
     held = None if check is None else _held(toolbox, solution, check, sigma)
     theta = system.theta(x[: final.P])
     shown = [(log, _shown(toolbox, system, theta, log, sigma)) for log in (*logs, check) if log]
-    error = _rms(final.covariance(solution.r), sigma, system)
+    error = _rms(final.alike(solution.r), sigma, system)
     std = np.sqrt(np.diag(solution.covariance))
     return Found(system, theta, std, solution.weak, sigma, error, held, shown)
 
@@ -288,12 +283,12 @@ class _Solution:
     @property
     def covariance(self) -> np.ndarray:
         """[P, P] of z."""
-        return information.covariance(self.problem.system, self.information)
+        return covariance(self.problem.system, self.information)
 
     @property
     def weak(self) -> list[Weak]:
         """Directions that the logs leave open."""
-        return information.weak(self.problem.system, self.information)
+        return weak(self.problem.system, self.information)
 
 
 def _held(toolbox: Any, solution: _Solution, check: Log, sigma: np.ndarray) -> Held:
@@ -302,13 +297,13 @@ def _held(toolbox: Any, solution: _Solution, check: Log, sigma: np.ndarray) -> H
     problem = Problem(system, [check], LONG, sigma)
     x, _ = _solved(toolbox, problem, solution.x[:P], FINE, 8, fixed=True)
     nominal, _ = _solved(toolbox, problem, system.z(system.nominal), FINE, 8, fixed=True)
-    found, known = (problem.covariance(problem.residuals(each[None])[0]) for each in (x, nominal))
+    found, known = (problem.alike(problem.residuals(each[None])[0]) for each in (x, nominal))
     J = problem.without_states(problem.jacobian(x, FINE))[: len(problem.y)]
     root = J @ np.linalg.cholesky(solution.covariance)  # [N, P]
     random = np.random.default_rng(0)
     draws = ((root @ random.normal(size=(P, DRAWS))) ** 2).mean(0)
     predicted = draws + problem.chance * random.normal(size=DRAWS)
-    e2, own = float(found.mean()), solution.problem.covariance(solution.r).mean()
+    e2, own = float(found.mean()), solution.problem.alike(solution.r).mean()
     unlikely = float(ndtri(LEVEL)) * solution.problem.chance
     explained = bool(e2 <= np.quantile(predicted, LEVEL) and own <= unlikely)
     widen = 1.0
@@ -323,10 +318,10 @@ def _held(toolbox: Any, solution: _Solution, check: Log, sigma: np.ndarray) -> H
     return Held(_rms(found, sigma, system), _rms(known, sigma, system), expected, explained, widen)
 
 
-def _rms(covariance: np.ndarray, sigma: np.ndarray, system: System) -> float:
+def _rms(squares: np.ndarray, sigma: np.ndarray, system: System) -> float:
     """RMS error of the positions, of squares in units of sigma [n]."""
     n = system.base.nq
-    return float(np.sqrt(max((covariance[:n] * sigma[:n] ** 2).mean(), 0.0)))
+    return float(np.sqrt(max((squares[:n] * sigma[:n] ** 2).mean(), 0.0)))
 
 
 def _shown(

@@ -32,7 +32,7 @@ def jacobian(
 
 
 def columns(system: System, theta: np.ndarray, step: float = SECANT) -> tuple[list, list[float]]:
-    """Models and delays at theta, at a step along each of the P coordinates, of all other forces."""
+    """Models and delays at theta, a step along each of P coordinates, and of all other forces."""
     z = system.z(theta)
     values = system.theta(z + step * np.vstack((np.zeros(system.size), np.eye(system.size))))
     models = [system.model(value) for value in values]
@@ -41,7 +41,7 @@ def columns(system: System, theta: np.ndarray, step: float = SECANT) -> tuple[li
 
 
 def mismatch(system: System, J: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """[...] how far the columns of forces [..., N, P] miss their sum, 0, over the largest of them."""
+    """[...] the sum of the columns of forces [..., N, P], which should be 0, over the largest."""
     forces = J[..., system.forces]
     total = np.linalg.norm(forces.sum(-1) + others, axis=-1)
     most = np.maximum(np.linalg.norm(forces, axis=-2).max(-1, initial=0.0), 1e-9)
@@ -77,9 +77,9 @@ def _named(system: System, v: np.ndarray) -> str:
     """The parameters of a direction [P], and how they go together."""
     v = v * np.sign(v[np.argmax(abs(v))])
     if system.forces.sum() > 1 and v @ system.forces / np.sqrt(system.forces.sum()) > SCALE:
-        return "scale: " + ", ".join(np.array(system.names)[system.forces]) + (
-            " by one factor moves nothing; leave out one that you know, or log a force"
-        )
+        forces = ", ".join(np.array(system.names)[system.forces])
+        known = "leave out one that you know, or log a force"
+        return f"scale: {forces}, all by one factor, move nothing; {known}"
     order = [i for i in np.argsort(-abs(v)) if abs(v[i]) > NAMED]
     up = [system.names[i] for i in order if v[i] > 0]
     down = [system.names[i] for i in order if v[i] < 0]
