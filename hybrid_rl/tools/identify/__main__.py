@@ -9,8 +9,8 @@ Without more than model and parameters it says what a motion could show, and wha
 excite= plans one; play= plays it, and stops the robot at its limits; log= fits the parameters and
 writes a model, intervals, ranges for episode.randomise.elements and a picture into the folder out.
 
-parameters is a YAML file with a line for each unknown number, such as joint.elbow.damping: [0.1, 1];
-the page "Your own robot" of the how-tos has an example. A log holds t [T], ctrl [T, nu] and q [T, nq].
+parameters is a YAML file with a line for each unknown number, joint.elbow.damping: [0.1, 1] say; the
+how-to "Identify a robot" has an example. A log holds t [T], ctrl [T, nu] and q [T, nq].
 """  # noqa: E501
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 
     fisher   maximise log det (I + I_0) over knots of the commands, I the Fisher information of the
              positions about z (`information`), I_0 that of the ranges: by cross-entropy search,
-             one second after the other
+             one second after the other, from the best of some signals; that one if it stays best
     sines, chirp, steps, babble    the largest amplitude that the limits allow
 
 All of them begin at rest. The nominal model stays within `limits` times each limit, and DRAWS
@@ -13,7 +13,9 @@ Source: Fedorov 1972, "Theory of optimal experiments" (the criterion D).
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -34,8 +36,9 @@ DT = 0.01  # [s] between commands
 KNOT = 0.1  # [s] between knots of the search
 COARSE = 0.2  # [s] between random knots
 WIDE = 0.25  # std of the first candidates, in half ranges of the actuators
-SEGMENT = 1.0  # [s] that are searched together
+SEGMENT, TAIL = 1.0, 0.3  # [s] that are searched together, and then to rest within the limits
 CANDIDATES, ROUNDS, KEPT = 24, 6, 6  # of the search in each segment
+SHARES = (0.25, 0.5, 0.75, 1.0)  # of the actuators' ranges: amplitudes of signals that it compares
 DRAWS = 32  # models of the ranges that keep the limits, too; a quarter of them during the search
 EDGE = 0.95  # of a limit, for them
 WORST = 0.2  # mismatch of derivatives from which a candidate is not believed
@@ -95,11 +98,7 @@ def excite(
     """
     search = _Search(system, limits, seed)
     t = DT * np.arange(round(seconds / DT))
-    if how == "fisher":
-        ctrl = search.plan(t)
-    else:
-        ramp = np.clip(t / COARSE, 0, 1)[:, None]
-        ctrl = search.half * ramp * SIGNALS[how](t, system.base.nu, search.random)
+    ctrl = search.plan(t) if how == "fisher" else search.signal(how, t)
     share = search.largest(t, ctrl)
     return search.judged(t, search.rest + share * ctrl)
 
@@ -177,38 +176,60 @@ class _Search:
             float(self.used(x)[0]),
         )
 
+    def signal(self, how: str, t: np.ndarray) -> np.ndarray:
+        """[K, nu] a signal of the largest amplitude, from rest, less the commands at rest."""
+        ramp = np.clip(t / COARSE, 0, 1)[:, None]
+        return self.half * ramp * SIGNALS[how](t, self.system.base.nu, self.random)
+
     def plan(self, t: np.ndarray) -> np.ndarray:
-        """[K, nu] the most informative commands, less those at rest, segment by segment."""
-        system, nu = self.system, self.system.base.nu
+        """[K, nu] the most informative commands, less those at rest."""
         models = [*self.models, *self.drawn[: DRAWS // 4]]
         delays = [*self.delays, *self.drawn_delays[: DRAWS // 4]]
         firsts = np.stack([self.first] * len(models))
-        known = np.diag(1 / widths(system) ** 2)
-        done, last = np.zeros((0, nu)), np.zeros(nu)
+        known = np.diag(1 / widths(self.system) ** 2)
+        scored = partial(self._scored, models, delays)
+        base, best, score = np.zeros((len(t), self.system.base.nu)), -np.inf, -np.inf
+        for how in SIGNALS:
+            paths = [share * self.signal(how, t) for share in SHARES for _ in range(2)]
+            scores, _, _ = scored(t, paths, firsts, known)
+            if scores.max() > best:
+                base, best = paths[int(np.argmax(scores))], scores.max()
+        done = np.zeros_like(base[:0])
         while len(done) < len(t):
             now = t[len(done) : len(done) + round(SEGMENT / DT)]
-            knots = max(round(len(now) * DT / KNOT), 1)
-            mean, std = np.zeros((knots, nu)), WIDE * np.tile(self.half, (knots, 1))
-            best = None
-            for _ in range(ROUNDS):
-                noise = self.random.normal(size=(CANDIDATES, knots, nu))
-                each = np.clip(mean + std * noise, self.low - self.rest, self.high - self.rest)
-                each[0] = mean
-                if best is not None:
-                    each[1] = best[1]
-                paths = [np.concatenate((done, self._between(last, k, len(now)))) for k in each]
-                scores, ends, gains = self._scored(
-                    t[: len(paths[0])], now, paths, models, delays, firsts, known
-                )
-                order = np.argsort(-scores)
-                mean, std = each[order[:KEPT]].mean(0), each[order[:KEPT]].std(0) + 0.02 * self.half
-                top = order[0]
-                if best is None or scores[top] > best[0]:
-                    best = scores[top], each[top], paths[top], ends[:, top], gains[top]
-            assert best is not None
-            _, _, done, firsts, gain = best
-            known, last = known + gain, done[-1]
-        return done
+            done, firsts, gain, score = self._segment(scored, now, base, done, firsts, known)
+            known = known + gain
+        return done if score > best else base
+
+    def _segment(
+        self,
+        scored: Callable[..., tuple[np.ndarray, np.ndarray, np.ndarray]],
+        now: np.ndarray,
+        base: np.ndarray,
+        done: np.ndarray,
+        firsts: np.ndarray,
+        known: np.ndarray,
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+        """`done` with the best commands for the times `now`; last states, information, score."""
+        last = done[-1] if len(done) else np.zeros_like(self.half)
+        knots = max(round(len(now) * DT / KNOT), 1)
+        at = len(done) + np.arange(1, knots + 1) * len(now) // knots - 1
+        mean, std = base[at], WIDE * np.tile(self.half, (knots, 1))
+        best: Any = (None, None, None, -np.inf)
+        ends_at = np.clip(1 - KNOT * np.arange(1, knots + 1) / TAIL, 0, 1)
+        tops = [mean, ends_at[:, None] * last]
+        for _ in range(ROUNDS):
+            noise = self.random.normal(size=(CANDIDATES - len(tops), knots, len(self.half)))
+            each = np.concatenate((tops, mean + std * noise))
+            each = np.clip(each, self.low - self.rest, self.high - self.rest)
+            paths = [np.concatenate((done, self._between(last, k, len(now)))) for k in each]
+            scores, ends, gains = scored(now, paths, firsts, known)
+            order = np.argsort(-scores)
+            kept, top = each[order[:KEPT]], order[0]
+            mean, std = kept.mean(0), kept.std(0) + 0.02 * self.half
+            if scores[top] > best[-1]:
+                best, tops = (paths[top], ends[:, top], gains[top], scores[top]), [each[top]]
+        return best
 
     def _between(self, last: np.ndarray, knots: np.ndarray, count: int) -> np.ndarray:
         """[count, nu] commands by straight lines from `last` through knots [k, nu]."""
@@ -218,17 +239,20 @@ class _Search:
 
     def _scored(
         self,
-        t: np.ndarray,
-        now: np.ndarray,
-        paths: list[np.ndarray],
         models: list,
         delays: list[float],
+        now: np.ndarray,
+        paths: list[np.ndarray],
         firsts: np.ndarray,
         known: np.ndarray,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Scores [C], last states [M, C, nstate] and informations [C, P, P] of commands."""
         system, P = self.system, self.system.size
-        motions = [self.motion(t, path, now[0]) for path in paths]
+        tail = np.linspace(1, 0, round(TAIL / DT))[:, None]
+        whole = [np.concatenate((path, tail * path[-1])) for path in paths]
+        t = DT * np.arange(len(whole[0]))
+        motions = [self.motion(t, path, now[0]) for path in whole]
+        last = round(len(now) * DT / system.base.opt.timestep)
         begins = np.repeat(firsts[:, None], len(paths), axis=1)
         x, sensors = simulate(models, delays, motions, begins)
         x, sensors = (a.reshape(len(models), len(paths), *a.shape[1:]) for a in (x, sensors))
@@ -244,4 +268,4 @@ class _Search:
         over = np.maximum(share[0] - self.limits, 0)
         over += np.maximum(share[tested:].max(0) - max(self.limits, EDGE), 0)
         scores -= 1e3 * np.minimum(over, 1e3) + 1e3 * (over > 0) + 1e2 * (wrong > WORST)
-        return scores, x[:, :, -1], gains
+        return scores, x[:, :, last], gains

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hybrid_rl.tools.identify.simulation import SECANT, Motion, measured, simulate
-from hybrid_rl.tools.identify.system import System
+from hybrid_rl.tools.identify.system import OF_FORCE, System
 
 NAMED = 0.25  # share of the largest entry from which a parameter belongs to a direction
 SCALE = 0.9  # cosine from which a direction is the scale of all forces
@@ -61,9 +61,25 @@ def widths(system: System) -> np.ndarray:
     return (system.z(system.high) - system.z(system.low)) / np.sqrt(12)
 
 
+def scale_open(system: System) -> bool:
+    """Whether everything of a force is unknown, and no sensor sees one."""
+    model, other = system.model(system.nominal), system.others(system.nominal, 2.0)
+    known = (*((getattr(model, name), getattr(other, name)) for name in OF_FORCE),)
+    return not system.sensors and all(np.allclose(a, b) for a, b in known)
+
+
+def _seen(system: System, information: np.ndarray) -> np.ndarray:
+    """An information matrix [P, P] without what errors of derivatives tell of an open scale."""
+    if not scale_open(system):
+        return information
+    s = system.forces / np.sqrt(system.forces.sum())
+    rest = np.eye(system.size) - np.outer(s, s)
+    return rest @ information @ rest
+
+
 def weak(system: System, information: np.ndarray) -> list[Weak]:
     """The directions that an information matrix [P, P] leaves wider than the ranges do."""
-    w = widths(system)
+    w, information = widths(system), _seen(system, information)
     values, vectors = np.linalg.eigh(information * w[:, None] * w)  # 1: as much as the range says
     found = []
     for value, vector in zip(values, (vectors * w[:, None]).T, strict=True):
@@ -90,4 +106,4 @@ def _named(system: System, v: np.ndarray) -> str:
 
 def covariance(system: System, information: np.ndarray) -> np.ndarray:
     """[P, P] of the coordinates after data with this information [P, P], and the ranges."""
-    return np.linalg.inv(information + np.diag(1 / widths(system) ** 2))
+    return np.linalg.inv(_seen(system, information) + np.diag(1 / widths(system) ** 2))
