@@ -48,7 +48,7 @@ class Ranges:
     elements: Mapping[str, Any] | str | None = None  # by name, or a YAML file of them
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "elements", _listed(self))
+        object.__setattr__(self, "elements", _listed(self) or None)
         for name in FACTORS:
             pair = getattr(self, name)
             right = isinstance(pair, tuple) and len(pair) == 2 and pair[0] <= pair[1]
@@ -82,7 +82,7 @@ class Ranges:
                 own[name] = now(name).at[: len(factor)].multiply(factor)
         if self.payload is not None:
             own["body_mass"] = now("body_mass").at[1].add(draw(4, self.payload))
-        for i, (name, pair) in enumerate(self.elements or (), len(FACTORS)):
+        for i, (name, pair) in enumerate(_listed(self), len(FACTORS)):
             names, at, nominal = _place(state.asset, name)
             value = jax.random.uniform(jax.random.fold_in(key, i), (), jnp.float32, *pair)
             for field in names:
@@ -91,15 +91,14 @@ class Ranges:
         return state.replace(fields=own)
 
 
-def _listed(ranges: Ranges) -> Any:
+def _listed(ranges: Ranges) -> tuple[tuple[str, tuple[float, float]], ...]:
     """The elements as (name, (low, high)) each, which can be hashed; those of a file are read."""
-    given: Any = ranges.elements
+    given = ranges.elements
     try:
         if isinstance(given, str):
             given = yaml.safe_load(Path(given).read_text(encoding="utf-8"))
-        rows = given.items() if isinstance(given, Mapping) else given or ()
-        pairs = ((name, (float(low), float(high))) for name, (low, high) in rows)
-        return tuple(sorted(pairs)) or None
+        named = dict(given or {}).items()
+        return tuple(sorted((name, (float(a), float(b))) for name, (a, b) in named))
     except (OSError, yaml.YAMLError, TypeError, ValueError) as error:
         line = f"must be {{ELEMENT.NAME.FIELD: [low, high]}}, or a YAML file of that ({error})"
         raise FieldError(ranges, "elements", line) from error
@@ -117,4 +116,4 @@ def _place(asset: str, name: str) -> tuple[tuple[str, ...], int, float]:
         line = f"must name an element of the model, with one of {known}"
         raise UsageError(f"episode.randomise.elements: {name}: {line}") from error
     at = int(found.dofadr[0]) if names[0].startswith("dof_") else found.id
-    return names, at, {"gain": 1.0, "mass": float(model.body_mass[at])}.get(attribute, 0.0)
+    return names, at, float(found.mass[0]) if kind == "body" else float(kind == "actuator")

@@ -35,10 +35,10 @@ from hybrid_rl.tools.identify.system import System
 DT = 0.01  # [s] between commands
 KNOT = 0.1  # [s] between knots of the search
 COARSE = 0.2  # [s] between random knots
-WIDE = 0.25  # std of the first candidates, in half ranges of the actuators
+WIDE = 0.75  # std of the first candidates, in amplitudes of the largest babble
 SEGMENT, TAIL = 1.0, 0.3  # [s] that are searched together, and then to rest within the limits
 CANDIDATES, ROUNDS, KEPT = 24, 6, 6  # of the search in each segment
-SHARES = (0.25, 0.5, 0.75, 1.0)  # of the actuators' ranges: amplitudes of signals that it compares
+SHARES = (0.5, 0.75, 1.0, 1.25)  # of the amplitude of the largest babble: of signals it compares
 DRAWS = 32  # models of the ranges that keep the limits, too; a quarter of them during the search
 EDGE = 0.95  # of a limit, for them
 WORST = 0.2  # mismatch of derivatives from which a candidate is not believed
@@ -113,7 +113,7 @@ class _Search:
         given = model.actuator_ctrllimited.astype(bool)
         self.low = np.where(given, model.actuator_ctrlrange[:, 0], -1.0)
         self.high = np.where(given, model.actuator_ctrlrange[:, 1], 1.0)
-        self.half = np.maximum(self.high - self.rest, self.rest - self.low)
+        self.half = self.unit = np.maximum(self.high - self.rest, self.rest - self.low)
         self.models, self.delays = columns(system, system.nominal)
         self.tested = len(self.models)  # the rest are draws
         drawn = system.draw(DRAWS, seed=1)
@@ -188,9 +188,11 @@ class _Search:
         firsts = np.stack([self.first] * len(models))
         known = np.diag(1 / widths(self.system) ** 2)
         scored = partial(self._scored, models, delays)
+        largest = self.largest(t, self.signal("babble", t))
+        self.unit = largest * self.half
         base, best, score = np.zeros((len(t), self.system.base.nu)), -np.inf, -np.inf
         for how in SIGNALS:
-            paths = [share * self.signal(how, t) for share in SHARES for _ in range(2)]
+            paths = [share * largest * self.signal(how, t) for share in SHARES for _ in range(2)]
             scores, _, _ = scored(t, paths, firsts, known)
             if scores.max() > best:
                 base, best = paths[int(np.argmax(scores))], scores.max()
@@ -214,7 +216,7 @@ class _Search:
         last = done[-1] if len(done) else np.zeros_like(self.half)
         knots = max(round(len(now) * DT / KNOT), 1)
         at = len(done) + np.arange(1, knots + 1) * len(now) // knots - 1
-        mean, std = base[at], WIDE * np.tile(self.half, (knots, 1))
+        mean, std = base[at], WIDE * np.tile(self.unit, (knots, 1))
         best: Any = (None, None, None, -np.inf)
         ends_at = np.clip(1 - KNOT * np.arange(1, knots + 1) / TAIL, 0, 1)
         tops = [mean, ends_at[:, None] * last]
@@ -226,7 +228,7 @@ class _Search:
             scores, ends, gains = scored(now, paths, firsts, known)
             order = np.argsort(-scores)
             kept, top = each[order[:KEPT]], order[0]
-            mean, std = kept.mean(0), kept.std(0) + 0.02 * self.half
+            mean, std = kept.mean(0), kept.std(0) + 0.02 * self.unit
             if scores[top] > best[-1]:
                 best, tops = (paths[top], ends[:, top], gains[top], scores[top]), [each[top]]
         return best

@@ -51,4 +51,4 @@ def load(file: str | Path, system: System) -> Log:
             raise UsageError(f"log={file}: {line}")
     if T < 20 or (np.diff(arrays["t"]) <= 0).any():
         raise UsageError(f"log={file}: t must rise, over 20 rows or more")
-    return Log(*(arrays.get(name) for name in ("t", "ctrl", "q")), arrays.get("sensors"))
+    return Log(arrays["t"], arrays["ctrl"], arrays["q"], arrays.get("sensors"))

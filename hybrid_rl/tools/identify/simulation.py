@@ -82,7 +82,8 @@ def simulate(
         firsts = np.stack([[motion.first for motion in motions]] * len(models))
     firsts = firsts.reshape(-1, firsts.shape[-1])
     each = [model for model in models for _ in motions]
-    x, sensors = rollout.rollout(each, _data(models[0]), firsts, ctrl, persistent_pool=True)
+    made = rollout.rollout(each, _data(models[0]), firsts, ctrl, persistent_pool=True)
+    x, sensors = (np.asarray(part) for part in made)
     return np.concatenate((firsts[:, None], x), axis=1), sensors
 
 

@@ -135,8 +135,9 @@ def read(model: str | Path, parameters: str | Path | Mapping[str, Any]) -> Syste
         if name.startswith("body."):
             _explicit(spec, base, name.split(".")[1])
     rows = [_row(spec, base, name, value) for name, value in given.items()]
-    columns = np.array(rows, float).reshape(-1, 3).T
-    return System(Path(model), tuple(given), *columns, noise, sensors, bounds, spec, base)
+    nominal, low, high = np.array(rows, float).reshape(-1, 3).T
+    names = tuple(given)
+    return System(Path(model), names, nominal, low, high, noise, sensors, bounds, spec, base)
 
 
 def _row(spec: Any, base: mujoco.MjModel, name: str, value: Any) -> tuple[float, float, float]:
