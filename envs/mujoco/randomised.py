@@ -83,7 +83,7 @@ class Ranges:
         if self.payload is not None:
             own["body_mass"] = now("body_mass").at[1].add(draw(4, self.payload))
         for i, (name, pair) in enumerate(_listed(self), len(FACTORS)):
-            names, at, nominal = _place(state.asset, name)
+            names, at, nominal = _found(state.asset, name)
             value = jax.random.uniform(jax.random.fold_in(key, i), (), jnp.float32, *pair)
             for field in names:
                 one = now(field).at[at]
@@ -104,7 +104,7 @@ def _listed(ranges: Ranges) -> tuple[tuple[str, tuple[float, float]], ...]:
         raise FieldError(ranges, "elements", line) from error
 
 
-def _place(asset: str, name: str) -> tuple[tuple[str, ...], int, float]:
+def _found(asset: str, name: str) -> tuple[tuple[str, ...], int, float]:
     """The fields of an element, its index there, and what to divide its value by; 0: it is set."""
     model = mjcf.load(asset)
     try:

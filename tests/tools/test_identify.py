@@ -72,15 +72,15 @@ def test_everything_of_a_force_together_is_named_as_what_no_log_shows(tmp_path):
 
 
 def test_fisher_tells_more_than_most_signals_and_all_keep_the_limits(tmp_path):
-    arm, told = system(tmp_path), {}
+    arm, gained = system(tmp_path), {}
     for how in ("fisher", "sines", "chirp", "steps", "babble"):
         plan = identify.excite(arm, how, 1.0, limits=0.8)
-        told[how] = -np.log(plan.deviations).sum()
+        gained[how] = -np.log(plan.deviations).sum()
         assert plan.reach <= 0.8
         for theta in arm.draw(5, seed=9):
             q = logged(arm, plan, theta).q
             assert np.abs(q).max() < 2.01
-    assert told.pop("fisher") > np.median([*told.values()])
+    assert gained.pop("fisher") > np.median([*gained.values()])
 
 
 def test_the_fit_finds_the_truth_and_says_when_the_model_lacks_something(tmp_path):

@@ -56,7 +56,7 @@ def prospect(system: System, plan: excitation.Plan) -> list[str]:
             strict=True,
         )
     ]
-    text += [f"not told apart: {each.text}" for each in plan.weak]
+    text += [f"not separable: {each.text}" for each in plan.weak]
     text.append(f"{plan.t[-1]:.1f} s, {plan.reach:.0%} of the nearest limit")
     if plan.mismatch > excitation.WORST:
         text.append("the derivatives are not to be believed: a joint sticks, or a motor saturates")

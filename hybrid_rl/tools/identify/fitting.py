@@ -6,7 +6,7 @@ s: state at the beginning of each window, so that neither noise nor a doubtful s
 Several starts of short windows come first, as long ones have local minima; the best go on with long
 ones. sigma of each channel is that of what follows no pattern: r_t^2 - e^2, below.
 
-A 95% interval is of the noise alone. The rest is told by what is left of the residuals without
+A 95% interval is of the noise alone. The rest follows from what is left of the residuals without
 noise, e^2 = mean r_t r_{t+k} over LAGS lags k: in the logs, and in a second one (`check`), which is
 not fitted. If e^2 is above 99% of what noise and intervals make, the model does not explain the
 logs. Then the intervals grow by the larger of two ratios: that of the second log's error to the
@@ -37,7 +37,7 @@ FINE = 0.005  # secants at the end
 ITERATIONS, TOLERANCE = 30, 1e-4  # of the long windows; relative step that ends them
 DAMPING = 5.0  # factor between dampings that are tried
 NEAR = 0.06  # [s] of the log around a window's begin, for its first state
-LAGS = 5  # rows over which residuals are alike, but not their noise
+LAGS = 5  # rows over which residuals are correlated, but not their noise
 OPEN = 10.0  # of the noise: unit of a position in s; of a speed it is that in 0.1 s
 LOOSE = 0.1  # weight of s in its units: it is almost free
 QUANTILE, LEVEL, DRAWS = 1.96, 0.99, 2000
@@ -198,14 +198,14 @@ class Problem:
             for part, w in zip(parts, self.windows, strict=True)
         ]
 
-    def alike(self, flat: np.ndarray) -> np.ndarray:
+    def correlated(self, flat: np.ndarray) -> np.ndarray:
         """[n] mean r_t r_{t+k}: the squared residuals without their noise, in units of sigma."""
         pairs = [(r[k:] * r[:-k]).mean(0) for r in self.split(flat) for k in range(1, LAGS + 1)]
         return np.mean(pairs, axis=0)
 
     @property
     def chance(self) -> float:
-        """Standard deviation of the mean of `alike` if there is noise alone."""
+        """Standard deviation of the mean of `correlated` if there is noise alone."""
         return 1 / np.sqrt(LAGS * len(self.y))
 
 
@@ -254,7 +254,7 @@ def fit(
         best = sorted(ends, key=lambda each: each[1])[: 1 if step == SECANT else None]
         x, _ = best[0]
         r = long.residuals(x[None])[0]
-        own = long.alike(r)
+        own = long.correlated(r)
         squares = sum((part**2).sum(0) for part in long.split(r)) / (len(long.y) / n)
         sigma = sigma * np.sqrt(np.maximum(squares - own, 1e-12))
     final = Problem(system, logs, LONG, sigma)
@@ -262,7 +262,7 @@ def fit(
     held = None if check is None else _held(toolbox, solution, check, sigma)
     theta = system.theta(x[: final.P])
     shown = [(log, _shown(toolbox, system, theta, log, sigma)) for log in (*logs, check) if log]
-    error = _rms(final.alike(solution.r), sigma, system)
+    error = _rms(final.correlated(solution.r), sigma, system)
     std = np.sqrt(np.diag(solution.covariance))
     return Found(system, theta, std, solution.weak, sigma, error, held, shown)
 
@@ -297,13 +297,13 @@ def _held(toolbox: Any, solution: _Solution, check: Log, sigma: np.ndarray) -> H
     problem = Problem(system, [check], LONG, sigma)
     x, _ = _solved(toolbox, problem, solution.x[:P], FINE, 8, fixed=True)
     nominal, _ = _solved(toolbox, problem, system.z(system.nominal), FINE, 8, fixed=True)
-    found, known = (problem.alike(problem.residuals(each[None])[0]) for each in (x, nominal))
+    found, known = (problem.correlated(problem.residuals(each[None])[0]) for each in (x, nominal))
     J = problem.without_states(problem.jacobian(x, FINE))[: len(problem.y)]
     root = J @ np.linalg.cholesky(solution.covariance)  # [N, P]
     random = np.random.default_rng(0)
     draws = ((root @ random.normal(size=(P, DRAWS))) ** 2).mean(0)
     predicted = draws + problem.chance * random.normal(size=DRAWS)
-    e2, own = float(found.mean()), solution.problem.alike(solution.r).mean()
+    e2, own = float(found.mean()), solution.problem.correlated(solution.r).mean()
     unlikely = float(ndtri(LEVEL)) * solution.problem.chance
     explained = bool(e2 <= np.quantile(predicted, LEVEL) and own <= unlikely)
     widen = 1.0

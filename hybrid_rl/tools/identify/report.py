@@ -23,7 +23,7 @@ def lines(found: Found) -> list[str]:
             system.names, found.theta, wide, _edges(found), strict=True
         )
     ]
-    text += [f"not told apart: {each.text}" for each in found.weak]
+    text += [f"not separable: {each.text}" for each in found.weak]
     n = system.base.nq
     noise = float(np.sqrt((found.noise[:n] ** 2).mean()))
     text.append(f"noise {noise:.2g}; error of the model in the logs, without it: {found.error:.2g}")
