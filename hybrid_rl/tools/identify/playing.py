@@ -2,10 +2,12 @@
 
 The robot is a class as `task=robot` has it (docs/howto_deploy.md): `dt`, `observe`, `apply`, `stop`
 and `reset`. Its actions are the commands of the model's actuators, and its observations begin with
-the positions of the model's joints. Whatever goes wrong ends in `stop`: no observation for SILENCE,
-one that is not finite, a position or a speed beyond the limits, an exception, Ctrl-C.
+the positions of the model's joints. `reset` must leave it at rest where the plan begins. Whatever
+goes wrong ends in `stop`: no observation for SILENCE, one that is not finite, a position beyond its
+limits, an exception, Ctrl-C.
 
-It runs in this process: nothing ends the motion if `observe` or `apply` never returns.
+It runs in this process: nothing ends the motion if `observe` or `apply` never returns. It does not
+look at speeds, which only the plan keeps.
 """
 
 import time
@@ -29,8 +31,8 @@ def play(system: System, plan: Plan | Log, robot: Any) -> Log:
         UsageError: if the robot was stopped; the line says why.
     """
     n, rows = system.base.nq, []
-    robot.reset()
     try:
+        robot.reset()
         begun = time.monotonic() + REST
         for t, ctrl in zip((-REST, *plan.t), (plan.ctrl[0], *plan.ctrl), strict=True):
             while (left := begun + t - time.monotonic()) > 0:
