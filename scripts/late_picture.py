@@ -36,7 +36,7 @@ def draw(tasks: dict[str, Any]) -> Figure:
     """A panel for each robot: interquartile mean and band of the seeds at each delay."""
     with matplotlib.rc_context(STYLE):
         picture = Figure(figsize=(4.2 * len(TITLES), 3.2), layout="constrained")
-        for axes, (task, title) in zip(picture.subplots(1, len(TITLES)), TITLES.items()):
+        for axes, (task, title) in zip(picture.subplots(1, 2), TITLES.items(), strict=True):
             for end, (name, ink, mark) in SHOWN.items():
                 arms = [arm for arm in tasks[task]["arms"] if arm.partition("late")[2] == end]
                 each = [np.array(tasks[task]["arms"][arm]["returns"])[:, None] for arm in arms]

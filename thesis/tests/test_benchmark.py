@@ -43,10 +43,10 @@ def test_a_race_takes_turns_and_divides_by_the_first():
 
 
 def test_without_precision_a_loop_has_that_of_its_method():
-    """What `train` would use, for which the default has bf16 on a GPU."""
-    for algo, own in (("hybrid_stochastic", "mixed"), ("sac", "auto")):
-        asked = {"experiment": None, "algo": algo}
-        assert parts._config(asked, "native", "default").precision == own
+    """What `train` would use, for which `fast` has bf16 on a GPU."""
+    asked = {"experiment": None, "algo": "hybrid_stochastic"}
+    for settings, own in (("fast", "mixed"), ("default", "auto")):
+        assert parts._config(asked, "native", settings).precision == own
 
 
 def test_products_are_counted_by_loops_and_the_costlier_branch():
