@@ -40,7 +40,7 @@ from hybrid_rl.types import Params
 
 RESET_S = 120.0  # [s] that a robot's `reset` may take
 LATEST = 0.9  # of a period, in which an action is sent
-AGEING = 0.99  # of the greatest age of observations, in a decision
+NEW = 0.01  # weight of the newest age in the mean age of observations
 RETRY_S = 1.0  # [s] between attempts to reach a robot that does not answer
 LOST = 3  # exit code: the robot does not answer
 OBSERVED = "must return (observation [{}], its time.monotonic()); it returned {}"
@@ -86,7 +86,7 @@ class Actor:
             self._decide.take(self.params)
         self._lag = known_lag(self.env, self.folder) or 0.0
         self._why = ""  # there are no observations
-        self._age = 0.0  # [s] of observations that a decision begins with, at most, of late
+        self._age = 0.0  # [s] of observations that a decision begins with, the mean of late
         self._version, self._beat, self._allowed = 0, time.monotonic(), math.inf
         self._made, self._ended = time.time(), False
         self._since = math.inf  # when the robot fell silent, if it has begun no episode since
@@ -170,7 +170,7 @@ class Actor:
         stamp: of the observation; begin: of the period.
         """
         age, dt = time.monotonic() - stamp, self.spec.dt
-        self._age = max(age, AGEING * self._age + (1 - AGEING) * age)
+        self._age += (age - self._age) * (NEW if self._age else 1.0)
         lag = min(whole((self._age + self._lag) / dt), PENDING)  # [decisions]
         self._decide.informed(np.array([u for _, u in self._past[::-1]]), lag)
         u, rate, last = self._decide(obs, self._number), self.env.rate or 2.0, self._past[0][1]

@@ -125,11 +125,6 @@ class Episode:
         """Of known delay [s]."""
         return self.delay + self.jitter / 2 if self.lag is None else self.lag
 
-    def _held(self, dt: float) -> float:
-        """Time [s] for which an action is held back before it is sent; dt: of a decision."""
-        rest = whole(self._lag / dt) * dt - self._lag if self.knows_lag else 0.0
-        return rest * (rest > 0)
-
     @property
     def world(self) -> Env:
         """The environment with everything that is around it (see `wrappers`)."""
@@ -139,8 +134,7 @@ class Episode:
         env = env if self.constraint is None else Constrained(env, self.constraint)
         env = Disturbed(env, self.action_noise) if self.action_noise else env
         if self.late:
-            delay = self.delay + self._held(env.spec.dt)
-            env = Late(env, delay, self.jitter, self.loss, self.longest)
+            env = Late(env, self.delay, self.jitter, self.loss, self.lag, self.longest)
         seen = any(self.std) or self.observe is not None
         return Sensed(env, self.std, self.observe) if seen else env
 

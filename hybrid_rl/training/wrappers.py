@@ -28,7 +28,7 @@ from hybrid_rl.types import Clock, EnvState, PyTree, Sent, Spec
 VIOLATED = "violation"  # in `metrics`: 1 where the decision violates the constraint, else 0
 
 
-SLIGHT = 0.1  # [decisions] that an action may act later than a whole number of them
+SLIGHT = 1 / 3  # [decisions] later than a whole number of them that an action may act
 
 
 def whole(lag: Any) -> Any:
@@ -177,6 +177,7 @@ class Late(Around):
     delay: float  # [s]
     jitter: float = 0.0  # [s] most that an action is later than that, uniform
     loss: float = 0.0  # probability that an action never arrives
+    lag: float | None = None  # [s] that is known, for which it is held back; None: as in `Episode`
     longest: float = 0.0  # [s] that an action takes; 0: no longer than these say
 
     def reset(self, key: Array) -> EnvState:
@@ -208,7 +209,7 @@ class Late(Around):
 
     def _send(self, sent: Sent, action: Array) -> Sent:
         """`sent` with one action more, the oldest of which cannot arrive any more."""
-        wait, drawing = jnp.float32(self._decisions(self.delay)), sent.drawing
+        wait, drawing = jnp.float32(self._delay), sent.drawing
         if drawing is not None:
             key, losing, later = jax.random.split(jax.random.wrap_key_data(drawing), 3)
             wait = wait + self._decisions(self.jitter) * jax.random.uniform(key)
@@ -224,9 +225,17 @@ class Late(Around):
         return round(time / self.spec.dt, 6)
 
     @property
+    def _delay(self) -> float:
+        """Of an action without jitter [decisions], also of being held back."""
+        lag = self.delay + self.jitter / 2 if self.lag is None else self.lag
+        rest = whole(lag / self.spec.dt) - lag / self.spec.dt
+        return round(self.delay / self.spec.dt + rest * (rest > 0), 6)
+
+    @property
     def _longest(self) -> float:
         """Of an action [decisions]."""
-        return self._decisions(self.longest or self.delay + self.jitter)
+        longest = self._decisions(self.longest)
+        return longest or round(self._delay + self._decisions(self.jitter), 6)
 
     def _steps(self, state: EnvState) -> int:
         """Steps of the physics in a decision; 0: actions arrive between decisions, or no MuJoCo."""

@@ -61,12 +61,17 @@ def test_a_run_of_a_sweep_is_the_run_alone(swept, tmp_path):
     assert summary_of(swept / "3").keys() == same
 
 
-def test_a_sweep_in_an_environment_of_gymnasium_is_the_runs_alone(tmp_path):
-    """Training and evaluation have the numbers of each run, and the environments its seeds."""
-    line = [*TINY, "task=gymnasium", "algo=nn_mppi", "total_steps=200", "eval_every=200"]
+@pytest.mark.parametrize(
+    ("task", "key", "value"),
+    [("gymnasium", "model_planner.rest", 0.9), ("pendulum", "episode.delay", 0.1)],
+)
+def test_a_sweep_of_a_world_outside_or_of_one_that_is_late(task, key, value, tmp_path):
+    """Training and evaluation have the numbers of each run, and environments its seeds."""
+    line = [*TINY, f"task={task}", "algo=nn_mppi", "total_steps=200", "eval_every=200"]
+    line += ["episode.longest=0.1"] * (task == "pendulum")
     swept, alone = tmp_path / "swept", tmp_path / "alone"
-    train.train([*line, "sweep.model_planner.rest=[0.0,0.9]", f"run_dir={swept}"], progress=False)
-    train.train([*line, "model_planner.rest=0.9", f"run_dir={alone}"], progress=False)
+    train.train([*line, f"sweep.{key}=[0.0,{value}]", f"run_dir={swept}"], progress=False)
+    train.train([*line, f"{key}={value}", f"run_dir={alone}"], progress=False)
     assert rows(swept / "1") != rows(swept / "0")
     for mine, theirs in zip(rows(swept / "1"), rows(alone), strict=True):
         assert list(mine) == list(theirs)

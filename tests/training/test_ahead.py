@@ -50,7 +50,7 @@ def test_the_predicted_state_is_that_of_the_model_rolled_by_hand(lag):
 
 
 @pytest.mark.parametrize("model", [Exact(ENV), World(Episode(ENV))])
-@pytest.mark.parametrize("delay", [1.3, 2.0])
+@pytest.mark.parametrize("delay", [1.5, 2.0])
 def test_it_acts_at_what_will_be_observed(model, delay):
     """Two decisions later, from the second on: by the true model that is the truth."""
     episode = Episode(ENV, delay=delay * ENV.spec.dt)

@@ -17,7 +17,7 @@ from hybrid_rl.training.ahead import acting_ahead
 from hybrid_rl.training.episode import Episode
 
 KEY = jax.random.key(0)
-LATE = 2.3 * Pendulum().spec.dt  # [s], which is held back to three decisions
+LATE = 2.5 * Pendulum().spec.dt  # [s], which is held back to three decisions
 
 
 def actions(env, decisions: int) -> np.ndarray:
