@@ -1,6 +1,6 @@
 """docs/atlas.md: every figure of the thesis with our result, from docs/atlas.yaml.
 
-Numbers, seeds, machines and commands are those of the JSON and of the pages of docs/results.
+Numbers, seeds and commands are those of the JSON and of the pages of docs/results.
 """
 
 import re
@@ -9,11 +9,10 @@ from typing import Any
 
 import yaml
 
-from scripts.pages.machines import machine
 from scripts.pages.values import RESULTS, evaluated, read
 
 DOCS = RESULTS.parent
-MORE = "Numbers, seeds, machines"
+MORE = "Numbers and seeds"
 VERDICTS = ("holds", "holds in part", "does not hold", "nothing to test")
 INTRODUCTION = """# Atlas: every figure and table of the thesis
 
@@ -22,7 +21,7 @@ INTRODUCTION = """# Atlas: every figure and table of the thesis
 I. Abraham, *Optimal Experimental Learning and Infinite Linear Embeddings*, Northwestern
 University, 2020: what each figure and table claims, and what we found. A picture leads to the
 page with bands, settings and commands. How the baselines were tuned: [printed, and
-ours](results/printed.md).
+ours](results/printed.md). The [machines](results/machines.yaml).
 """
 
 
@@ -49,12 +48,11 @@ def seeds(stem: str) -> str:
 
 
 def sources(entry: dict[str, Any]) -> str:
-    """The JSON of an entry, those of the same seeds and machine together."""
+    """The JSON of an entry, those of the same seeds together."""
     groups: dict[str, list[str]] = {}
     for stem in entry["results"]:
-        measured = ", ".join(filter(None, [seeds(stem), machine(stem)]))
-        groups.setdefault(measured, []).append(f"[{stem}](results/{stem}.json)")
-    texts = [f"{measured}: {', '.join(files)}" for measured, files in groups.items()]
+        groups.setdefault(seeds(stem), []).append(f"[{stem}](results/{stem}.json)")
+    texts = [f"{found}: {', '.join(files)}".removeprefix(": ") for found, files in groups.items()]
     return "; ".join(texts)
 
 
