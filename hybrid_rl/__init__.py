@@ -37,7 +37,6 @@ if TYPE_CHECKING:
     from hybrid_rl.analysis.read_back import names as names
     from hybrid_rl.analysis.read_back import newest as newest
     from hybrid_rl.analysis.read_back import rebuilt as rebuilt
-    from hybrid_rl.analysis.read_back import retargeted as retargeted
     from hybrid_rl.analysis.read_back import runs as runs
     from hybrid_rl.analysis.results import RunFolder as RunFolder
     from hybrid_rl.analysis.results import differences as differences
@@ -69,6 +68,7 @@ if TYPE_CHECKING:
     from hybrid_rl.run.machine import provenance as provenance
     from hybrid_rl.run.machine.jax_settings import prepare as prepare
     from hybrid_rl.run.online import OnlineLearner as OnlineLearner
+    from hybrid_rl.run.retarget import retargeted as retargeted
     from hybrid_rl.run.saved import Trained as Trained
     from hybrid_rl.settings.build import Run as Run
     from hybrid_rl.settings.build import build as build
@@ -90,7 +90,7 @@ _MODULES = (  # that are public, by their last name; train and evaluate can be c
 )
 _MEMBERS = {  # module -> its public names
     "api": "load make",
-    "analysis.read_back": "decisions expert film names newest rebuilt retargeted runs",
+    "analysis.read_back": "decisions expert film names newest rebuilt runs",
     "analysis.curves": "Curve area curves spread",
     "analysis.curves_picture": "plot",
     "analysis.results": "RunFolder differences",
@@ -103,6 +103,7 @@ _MEMBERS = {  # module -> its public names
     "fields": "part",
     "run.machine.jax_settings": "prepare",
     "run.online": "OnlineLearner",
+    "run.retarget": "retargeted",
     "run.saved": "Trained",
     "settings.build": "Run build",
     "training.agent": "Agent",

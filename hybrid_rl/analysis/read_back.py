@@ -21,35 +21,12 @@ from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.checkpoints.store import read_part
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.run.recording import scripted_expert
-from hybrid_rl.run.retarget import GOALS, apply_changes
-from hybrid_rl.run.retarget import retargeted as aim
 from hybrid_rl.run.saved import Trained, build_run, restore
 from hybrid_rl.run.saved import names as policies
 from hybrid_rl.settings.build import Run
 from hybrid_rl.settings.groups import options
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Transition
-
-
-def retargeted(
-    trained: Trained, overrides: Sequence[str], config_dir: str | Path | None = None
-) -> Trained:
-    """`trained` on another goal, with another planner, or in another body.
-
-        slow = retargeted(load("halfcheetah"), ["reward=speed", "reward.target=2", "env.mass=1.5"])
-
-    overrides: as of `evaluate`: of reward, constraint, planner, imagine, env.KEY and episode.KEY.
-    config_dir: a folder with groups of the user, as for `--config-dir`.
-
-    Raises:
-        UsageError: for a name, a key or a value that does not exist or does not fit the task, or a
-            planner or imagination where no model was learned.
-    """
-    worlds = [text for text in overrides if text.startswith(("env.", "episode."))]
-    goal = [text for text in overrides if text not in worlds]
-    now = aim(trained, goal, config_dir)
-    none: dict[str, None] = dict.fromkeys((*GOALS, "config_dir"))
-    return apply_changes(now, none, dict(text.split("=", 1) for text in worlds))[0]
 
 
 def expert(

@@ -71,39 +71,37 @@ def load_changed(
     trained = load_named(given)
     if isinstance(trained.episode.env, Robot | Outside):
         raise UsageError(f"{trained.task}: {ALONE}")
-    return apply_changes(trained, given, changes)
-
-
-def apply_changes(
-    trained: Trained, given: Mapping[str, Any], changes: Mapping[str, str]
-) -> tuple[Trained, dict[str, str]]:
-    """The result of `load_changed`, of a run or policy that is read already."""
-    goal = {key: given[key] for key in GOALS if given[key]}
-    goal |= {key: value for key, value in changes.items() if key.split(".")[0] in GOALS}
-    words = [f"{key}={value}" for key, value in goal.items()]
-    trained = retargeted(trained, words, given["config_dir"])
-    rest = {key: value for key, value in changes.items() if key not in goal}
-    if rest:
-        assert trained.config is not None
-        episode, acting = acting_in(disturbed(trained.config, rest), trained.controllers)
-        trained = replace(trained, episode=episode, controllers=acting)
-    return trained, {**goal, **rest}
+    changed = {key: given[key] for key in GOALS if given[key]}
+    changed |= {key: value for key, value in changes.items() if key.split(".")[0] in GOALS}
+    changed |= changes  # the world last
+    words = [f"{key}={value}" for key, value in changed.items()]
+    return retargeted(trained, words, given["config_dir"]), changed
 
 
 def retargeted(
     trained: Trained, overrides: Sequence[str], config_dir: str | Path | None = None
 ) -> Trained:
-    """`trained` with the goal and the planner that the overrides name.
+    """`trained` on another goal, with another planner, or in another body.
 
-    overrides: reward=NAME, reward.KEY=VALUE, as of commands; also of constraint, planner, imagine.
+        slow = retargeted(load("halfcheetah"), ["reward=speed", "reward.target=2", "env.mass=1.5"])
+
+    overrides: as of `evaluate`: of reward, constraint, planner, imagine, env.KEY and episode.KEY.
     config_dir: a folder with groups of the user, as for `--config-dir`.
 
     Raises:
         UsageError: for a name, a key or a value that does not exist or does not fit the task, or a
             planner or imagination where no model was learned.
     """
-    now, before = aimed(trained, overrides, config_dir)
-    return now if before is None else _taught(now, before)
+    worlds = [text for text in overrides if text.startswith(("env.", "episode."))]
+    goal = [text for text in overrides if text not in worlds]
+    now, before = aimed(trained, goal, config_dir)
+    now = now if before is None else _taught(now, before)
+    if not worlds:
+        return now
+    assert now.config is not None
+    episode = disturbed(now.config, dict(text.split("=", 1) for text in worlds))
+    episode, acting = acting_in(episode, now.controllers)
+    return replace(now, episode=episode, controllers=acting)
 
 
 def aimed(
