@@ -12,26 +12,28 @@ default, is no integral. With the exact model the loop of computed torque is sta
 Source: Siciliano et al. 2009, "Robotics", section 8.5 (inverse dynamics control, PD control).
 """
 
+from typing import Annotated
+
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs import sawyer_torque
 from hybrid_rl.envs.mujoco import inverse_dynamics
 from hybrid_rl.envs.sawyer_torque import DT, LIMITS, SawyerTorque
-from hybrid_rl.fields import NotNegative, Positive, part
+from hybrid_rl.fields import Must, NotNegative, Positive, part
 from hybrid_rl.types import Params, Spec
+
+IS_ARM = Must(lambda world: isinstance(world, SawyerTorque), "be that of task=sawyer_torque")
+Arm = Annotated[SawyerTorque, IS_ARM]
 
 
 @part
 class ComputedTorque:
     """Feedback linearisation of `sawyer_torque`."""
 
-    world: SawyerTorque
+    world: Arm
     frequency: Positive = 20.0  # [rad/s] w of the errors
     integral: NotNegative = 0.0  # [1/s] k
-
-    def __post_init__(self) -> None:
-        _check(self.world)
 
     def init(self, spec: Spec) -> Array:
         """z [7] = 0."""
@@ -57,13 +59,10 @@ class ComputedTorque:
 class JointPD:
     """Proportional and derivative feedback at each joint of `sawyer_torque`."""
 
-    world: SawyerTorque
+    world: Arm
     stiffness: tuple[NotNegative, ...] = (400.0, 400.0, 200.0, 200.0, 40.0, 20.0, 10.0)  # [N m/rad]
     damping: tuple[NotNegative, ...] = (40.0, 40.0, 20.0, 20.0, 4.0, 2.0, 1.0)  # [N m s/rad]
     integral: NotNegative = 0.0  # [1/s] k
-
-    def __post_init__(self) -> None:
-        _check(self.world)
 
     def init(self, spec: Spec) -> Array:
         """z [7] = 0."""
@@ -87,12 +86,6 @@ def _integrated(error: Array, z: Array, k: float) -> tuple[Array, Array]:
     """e + k z [7], and the next z [7], of the error e [7] [rad]."""
     z = z + DT * error
     return error + k * z, z
-
-
-def _check(world: SawyerTorque) -> None:
-    if not isinstance(world, SawyerTorque):
-        kind = type(world).__name__
-        raise ValueError(f"world={kind}: needs task=sawyer_torque")
 
 
 def _action(torques: Array) -> Array:

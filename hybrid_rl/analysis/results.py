@@ -182,8 +182,8 @@ def short(differing: Sequence[Mapping[str, str]]) -> list[str]:
     labels = [" ".join(f"{shown[k]}={v}" for k, v in each.items()) for each in differing]
     if len(keys) <= MOST_KEYS and all(len(label) <= MOST_CHARACTERS for label in labels):
         return labels
-    order = sorted(set(labels))
-    return [_letters(order.index(label)) for label in labels]
+    numbers = [sorted(set(labels)).index(label) for label in labels]
+    return [chr(ord("A") + n % 26) + str(n // 26 or "") for n in numbers]  # ..., Z, A1, B1, ...
 
 
 def labels(folders: list[Path]) -> list[str]:
@@ -209,11 +209,6 @@ def _ending(key: str, keys: Sequence[str]) -> str:
     others = [other for other in keys if other != key]
     unique = (end for end in endings if not any(f".{o}".endswith(f".{end}") for o in others))
     return next(unique, key)
-
-
-def _letters(number: int) -> str:
-    """A, B, ..., Z, A1, B1, ..."""
-    return chr(ord("A") + number % 26) + (str(number // 26) if number >= 26 else "")
 
 
 def _column(settings: Sequence[Mapping[str, Any]], key: str) -> tuple[str, ...]:

@@ -7,6 +7,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
+from jax.flatten_util import ravel_pytree
 
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.core.lifting import is_identity
@@ -58,28 +59,27 @@ def _exported(f: Callable[..., Any], platforms: Sequence[str], *given: Any) -> j
         return jax.export.export(jax.jit(f), platforms=platforms)(*given)
 
 
+def _bits(leaf: Any) -> Array:
+    """A number of 32 bits or bool as uint32."""
+    leaf = jnp.asarray(leaf)
+    leaf = leaf.astype(jnp.uint32) if leaf.dtype == bool else leaf
+    return jax.lax.bitcast_convert_type(leaf, jnp.uint32)
+
+
 def _words(tree: Any) -> Array:
     """The leaves of 32 bits or bool, one after the other, as uint32 [w]."""
-
-    def one(leaf: Array) -> Array:
-        leaf = leaf.astype(jnp.uint32) if leaf.dtype == bool else leaf
-        return jax.lax.bitcast_convert_type(leaf, jnp.uint32).reshape(-1)
-
-    return jnp.concatenate([one(jnp.asarray(leaf)) for leaf in jax.tree.leaves(tree)])
+    return ravel_pytree(jax.tree.map(_bits, tree))[0]
 
 
 def _tree(words: Array, like: Any) -> Any:
     """The inverse of `_words`, for a tree like `like`."""
-    leaves, structure = jax.tree.flatten(jax.tree.map(jnp.asarray, like))
-    parts = jnp.split(words, np.cumsum([leaf.size for leaf in leaves])[:-1])
 
-    def one(part: Array, leaf: Array) -> Array:
-        part = part.reshape(leaf.shape)
-        if leaf.dtype == bool:
-            return part != 0
-        return jax.lax.bitcast_convert_type(part, leaf.dtype)
+    def one(bits: Array, leaf: Any) -> Array:
+        leaf = jnp.asarray(leaf)
+        same = leaf.dtype != bool
+        return jax.lax.bitcast_convert_type(bits, leaf.dtype) if same else bits != 0
 
-    return jax.tree.unflatten(structure, map(one, parts, leaves))
+    return jax.tree.map(one, ravel_pytree(jax.tree.map(_bits, like))[1](words), like)
 
 
 def layers(spec: Spec, controller: Controller, params: Params) -> Perceptron:

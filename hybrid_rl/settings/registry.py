@@ -10,17 +10,10 @@ from functools import cache
 from pathlib import Path
 
 PACKAGE = Path(__file__).parents[1]
+GROUPS = "belief constraint controller critic learner model objective proposal schedule target"
 ROLES = {  # group of conf/ -> folder of hybrid_rl
-    **{"belief": "beliefs", "controller": "controllers", "critic": "critics"},
-    **{
-        "constraint": "constraints",
-        "features": "features",
-        "learner": "learners",
-        "map": "beliefs/maps",
-        "model": "models",
-    },
-    **{"objective": "objectives", "policy": "policies", "proposal": "proposals"},
-    **{"schedule": "schedules", "target": "targets"},
+    **{group: f"{group}s" for group in GROUPS.split()},
+    **{"features": "features", "map": "beliefs/maps", "policy": "policies"},
 }
 PART = re.compile(r"^@(?:part|dataclass\(frozen=True\))\nclass (\w+)", re.MULTILINE)
 
