@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tiny import TINY, call, call_train, run
+from tiny import TINY, call, call_train, finished, run
 from tiny import demonstrate as recorded
 
 from hybrid_rl import demonstrate, evaluate, train
@@ -22,12 +22,8 @@ from hybrid_rl.types import Params
 pytestmark = pytest.mark.turns(3)
 
 
-@pytest.fixture(scope="module")
-def trained(tmp_path_factory) -> Path:
-    """A run of two seeds whose episodes take 40 decisions."""
-    folder = tmp_path_factory.mktemp("demonstrate") / "run"
-    run(folder, "algo=sac", "episode.steps=40", "num_seeds=2")
-    return folder
+# A run of two seeds whose episodes take 40 decisions.
+trained = finished("algo=sac", "episode.steps=40", "num_seeds=2")
 
 
 def test_a_hand_made_expert_is_recorded_as_it_acted():

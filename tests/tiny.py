@@ -5,6 +5,7 @@ import json
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from omegaconf import DictConfig
 from programs import shared
 
 from hybrid_rl import train
-from hybrid_rl.cli import hydra_line
+from hybrid_rl.cli import command, hydra_line
 from hybrid_rl.data.demonstrations import save
 from hybrid_rl.settings import build as config
 from hybrid_rl.settings.groups import search_path
@@ -28,6 +29,18 @@ def run(folder: Path, *overrides: str) -> dict:
     """The summary of a tiny run into `folder`, as a notebook makes it."""
     with shared():
         return train.train(config.load([*TINY, f"run_dir={folder}", *overrides]))
+
+
+def finished(*overrides: str) -> Any:
+    """The fixture of a module: the folder of a tiny run that is done."""
+
+    @pytest.fixture(scope="module")
+    def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+        folder = tmp_path_factory.mktemp("finished") / "run"
+        run(folder, *overrides)
+        return folder
+
+    return folder
 
 
 def demonstrate(folder: Path, given: DictConfig, episodes: int = 10) -> str:
@@ -85,3 +98,15 @@ def only_line(capfd: pytest.CaptureFixture[str]) -> str:
     assert line.startswith("hybrid_rl: ")
     assert line.count("\n") == 1
     return line
+
+
+def refusal(
+    capfd: pytest.CaptureFixture[str],
+    *arguments: str | Path,
+    of: Callable[[], None] | None = None,
+    code: int = 2,
+) -> str:
+    """The one line with which a command, train if none is given, ends with this exit code."""
+    ended = call_train(*arguments) if of is None else call(lambda: command.run(of), *arguments)
+    assert ended == code
+    return only_line(capfd)

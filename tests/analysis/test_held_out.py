@@ -8,8 +8,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-import tiny
-from tiny import call
+from tiny import call, finished
 
 from hybrid_rl import figures
 from hybrid_rl.analysis import held_out
@@ -41,12 +40,8 @@ def test_the_error_is_that_of_numpy_for_linear_models() -> None:
     np.testing.assert_allclose(errors, [first, 1.0], rtol=1e-4)
 
 
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A run of two learners of a model."""
-    folder = tmp_path_factory.mktemp("runs") / "run"
-    tiny.run(folder, "algo=nn_mppi", "total_steps=60", "num_seeds=2")
-    return folder
+# A run of two learners of a model.
+folder = finished("algo=nn_mppi", "total_steps=60", "num_seeds=2")
 
 
 def test_the_study_measures_each_seed_on_both_kinds_of_decisions(folder: Path) -> None:

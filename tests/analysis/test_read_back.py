@@ -2,16 +2,11 @@
 
 import numpy as np
 import pytest
-from tiny import rows_of, run
+from tiny import finished, rows_of, run
 
 import hybrid_rl as hr
 
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    path = tmp_path_factory.mktemp("run") / "sac"
-    run(path, "task=pendulum", "algo=sac", "num_seeds=2", "total_steps=550", "replay.capacity=170")
-    return path
+folder = finished("algo=sac", "num_seeds=2", "total_steps=550", "replay.capacity=170")
 
 
 def test_a_run_is_read_and_rebuilt(folder):

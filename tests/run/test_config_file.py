@@ -7,7 +7,7 @@ import shutil
 import pytest
 import yaml
 from omegaconf import OmegaConf
-from tiny import call, call_train, contents, demonstrate, only_line, run, summary_of
+from tiny import call, call_train, contents, demonstrate, finished, only_line, summary_of
 
 from hybrid_rl import __version__, evaluate
 from hybrid_rl.analysis.results import RunFolder
@@ -22,12 +22,8 @@ METHODS = {
 }
 
 
-@pytest.fixture(scope="module")
-def trained(tmp_path_factory):
-    """A run that is done."""
-    folder = tmp_path_factory.mktemp("trained") / "run"
-    run(folder, "algo=sac", "total_steps=100", "checkpoint_every=50", "eval_every=100")
-    return folder
+# A run that is done.
+trained = finished("algo=sac", "total_steps=100", "checkpoint_every=50", "eval_every=100")
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ import jax
 import jax.numpy as jnp
 import programs
 import pytest
-from tiny import TINY, call, call_train, contents, only_line, run, summary_of
+from tiny import TINY, call, call_train, contents, finished, only_line, refusal, summary_of
 
 from hybrid_rl import evaluate, export
 from hybrid_rl.cli import command
@@ -22,12 +22,7 @@ from hybrid_rl.run.machine import memory
 pytestmark = pytest.mark.turns(3)
 
 
-@pytest.fixture(scope="module")
-def trained(tmp_path_factory):
-    """A run that is done."""
-    folder = tmp_path_factory.mktemp("trained") / "run"
-    run(folder, "algo=sac")
-    return folder
+trained = finished("algo=sac")  # a run that is done
 
 
 def harm(folder):
@@ -58,10 +53,8 @@ def test_without_a_sound_checkpoint_nothing_is_done(copied, capfd):
     for step in (500, 600):
         harm(copied / "checkpoints" / str(step))
     before = contents(copied)
-    assert call_train(f"resume={copied}") == 1
-    assert "holds no sound checkpoint" in only_line(capfd)
-    assert call(lambda: command.run(evaluate.main), f"run={copied}") == 1
-    assert "holds no sound checkpoint" in only_line(capfd)
+    assert "holds no sound checkpoint" in refusal(capfd, f"resume={copied}", code=1)
+    assert "holds no sound checkpoint" in refusal(capfd, f"run={copied}", of=evaluate.main, code=1)
     assert contents(copied) == before
 
 
@@ -119,8 +112,7 @@ def test_a_learner_that_breaks_is_named(copied, monkeypatch, capfd):
     monkeypatch.setattr(session.Session, "_advance", spoilt)
     monkeypatch.setattr(rows, "infinite", lambda *_: {})
     monkeypatch.setattr(Evaluations, "__call__", lambda *_: [{"eval/return": 0.0}])
-    assert call_train(f"resume={copied}", "total_steps=700") == 1
-    printed = only_line(capfd)
+    printed = refusal(capfd, f"resume={copied}", "total_steps=700", code=1)
     assert printed.startswith("hybrid_rl: seed 0, step 700: policy.")
     assert " is not finite; checkpoint 600 is intact" in printed
     assert checkpoint.steps(copied / "checkpoints") == [500, 600]

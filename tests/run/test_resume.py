@@ -8,7 +8,7 @@ import time
 import numpy as np
 import pytest
 from omegaconf import OmegaConf
-from tiny import TINY, call_train, contents, run, summary_of
+from tiny import TINY, call_train, contents, finished, run, summary_of
 
 from hybrid_rl import __version__
 from hybrid_rl.run import launch
@@ -22,12 +22,7 @@ HYBRID = ["algo=hybrid_stochastic", "eval_modes=[full,policy]", "replay.capacity
 NATIVE = ["task=cartpole", "algo=sac", "physics=native", "episode.steps=40"]
 
 
-@pytest.fixture(scope="module")
-def whole(tmp_path_factory):
-    """A run that was never stopped."""
-    folder = tmp_path_factory.mktemp("whole") / "run"
-    run(folder, *HYBRID)
-    return folder
+whole = finished(*HYBRID)  # a run that was never stopped
 
 
 @pytest.fixture(scope="module")

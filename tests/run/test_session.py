@@ -9,7 +9,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from tiny import TINY, call_train, rows_of, run, summary_of
+from tiny import TINY, call_train, finished, rows_of, run, summary_of
 
 from hybrid_rl.errors import DivergenceError
 from hybrid_rl.run import schedule, session
@@ -27,12 +27,7 @@ pytestmark = pytest.mark.turns(3)
 SAC = ["algo=sac", "num_seeds=2"]
 
 
-@pytest.fixture(scope="module")
-def whole(tmp_path_factory):
-    """A run of two learners that was never stopped."""
-    folder = tmp_path_factory.mktemp("whole") / "run"
-    run(folder, *SAC)
-    return folder
+whole = finished(*SAC)  # a run of two learners that was never stopped
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from omegaconf import OmegaConf
 from programs import shared
-from tiny import call_train, contents, only_line, rows_of, run, summary_of
+from tiny import call_train, contents, finished, refusal, rows_of, summary_of
 
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.errors import UsageError
@@ -27,12 +27,8 @@ HYBRID += ["episode.steps=40", "checkpoint_every=150", "eval_every=150", "eval_m
 MOTION = ["reward=aim", "reward.quantity=motion", "reward.target=[0,0,1,0,0,0]"]
 
 
-@pytest.fixture(scope="module")
-def source(tmp_path_factory):
-    """A run of one learner; its memory holds the last 200 of 300 decisions."""
-    folder = tmp_path_factory.mktemp("source") / "run"
-    run(folder, *HYBRID, "total_steps=300", "seed=4")
-    return folder
+# A run of one learner; its memory holds the last 200 of 300 decisions.
+source = finished(*HYBRID, "total_steps=300", "seed=4")
 
 
 @pytest.fixture(scope="module")
@@ -208,8 +204,7 @@ REFUSED = [  # overrides, words of the line
 def test_what_does_not_fit_is_one_line(source, tmp_path, monkeypatch, capfd, given, words):
     monkeypatch.chdir(tmp_path)
     before = contents(source)
-    assert call_train(f"run={source}", given.format(source=source)) == 2
-    assert words in only_line(capfd)
+    assert words in refusal(capfd, f"run={source}", given.format(source=source))
     assert contents(source) == before
 
 
@@ -242,11 +237,9 @@ def test_where_a_run_wrote_to_is_no_word_of_the_next_one(tmp_path):
 
 def test_no_run_and_no_checkpoint_are_one_line(source, tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)
-    assert call_train("run=nowhere") == 2
-    assert "run=nowhere: no run folder there" in only_line(capfd)
+    assert "run=nowhere: no run folder there" in refusal(capfd, "run=nowhere")
     (tmp_path / "begun").mkdir()
     shutil.copy(source / "config.yaml", tmp_path / "begun")
-    assert call_train("run=begun") == 2
-    assert "run=begun: holds no checkpoint yet" in only_line(capfd)
+    assert "run=begun: holds no checkpoint yet" in refusal(capfd, "run=begun")
     with pytest.raises(UsageError, match="run=nowhere: only the command"):
         config.load(["run=nowhere"])

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from tiny import call, only_line, run, summary_of
+from tiny import call, finished, only_line, summary_of
 
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
@@ -257,12 +257,8 @@ def test_a_model_is_judged_beside_no_change_and_collisions_count_once():
     assert (abs(inside[0]) <= abs(obs[:50]).max(0)).all()
 
 
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    """A tiny run of a method with a model."""
-    folder = tmp_path_factory.mktemp("doctor") / "run"
-    run(folder, "task=pendulum", "algo=nn_mppi", "total_steps=120", "random_steps=3")
-    return folder
+# A tiny run of a method with a model.
+folder = finished("task=pendulum", "algo=nn_mppi", "total_steps=120", "random_steps=3")
 
 
 main = partial(call, partial(command.run, doctor.main))
@@ -301,12 +297,8 @@ def test_damaged_numbers_are_one_line(folder, monkeypatch, capsys):
     assert capsys.readouterr().out.startswith("numbers  ")
 
 
-@pytest.fixture(scope="module")
-def pair(tmp_path_factory):
-    """A tiny run of two learners without a model, seeds 4 and 5."""
-    folder = tmp_path_factory.mktemp("pair") / "run"
-    run(folder, "task=pendulum", "algo=sac", "total_steps=60", "num_seeds=2", "seed=4")
-    return folder
+# A tiny run of two learners without a model, seeds 4 and 5.
+pair = finished("task=pendulum", "algo=sac", "total_steps=60", "num_seeds=2", "seed=4")
 
 
 def test_a_value_beyond_all_rewards_is_noticed(pair):

@@ -7,7 +7,7 @@ import sys
 import jax
 import numpy as np
 import pytest
-from tiny import TINY, rows_of, run, summary_of
+from tiny import TINY, finished, rows_of, run, summary_of
 
 pytestmark = pytest.mark.turns(3)
 
@@ -40,12 +40,7 @@ def on_two_devices(*runs):
     return done.stdout
 
 
-@pytest.fixture(scope="module")
-def single(tmp_path_factory):
-    """A run on one device."""
-    folder = tmp_path_factory.mktemp("devices") / "one"
-    run(folder, *SHORT)
-    return folder
+single = finished(*SHORT)  # a run on one device
 
 
 def test_learners_on_two_devices_equal_those_on_one(single, tmp_path):
