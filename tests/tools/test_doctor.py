@@ -52,6 +52,7 @@ def evidence(seen, action, reward=None, terminated=False, rest=None):
     each = (seen[:, :-1], action, reward, *flags, seen[:, 1:])
     made = Transition(*(a.reshape(1, -1, *a.shape[2:]) for a in each))
     agent = SimpleNamespace(spec=Spec(seen.shape[-1], 1, DT), random_steps=10**6, num_envs=1)
+    agent.episode = SimpleNamespace(history=1)
     folder, run = SimpleNamespace(rows=[], summary={}), SimpleNamespace(agent=agent)
     given = Evidence(folder, run, made)
     vars(given)["at_rest"] = rest
