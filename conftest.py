@@ -250,3 +250,10 @@ def can_draw():
             offscreen.backend()
         return False
     return True
+
+
+@pytest.fixture
+def draws(can_draw):
+    """For tests of pictures alone: skips them where this machine cannot draw."""
+    if not can_draw:
+        pytest.skip("needs libegl1 or libosmesa6")

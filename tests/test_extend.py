@@ -262,8 +262,7 @@ class Swing:
         return self._state(jax.pure_callback(advance, shape, state.data, action))
 
     def _state(self, x):
-        no = jnp.zeros((), bool)
-        return EnvState(x, x, x[0], terminated=no, truncated=no)
+        return EnvState(x, x, x[0])
 """
 
 

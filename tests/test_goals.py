@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import jax
@@ -24,6 +25,7 @@ pytestmark = pytest.mark.turns(3)
 METHOD = ["algo=hybrid_stochastic", "learning=replay"]
 AT = ["reward=aim", "reward.quantity=position", "reward.target=0.5"]
 SMALL = ["planner.horizon=3", "planner.tail=2", "planner.samples=6", "planner.refined=2"]
+main = partial(call, lambda: command.run(demonstrate.main))
 
 
 # A run of a few decisions with models, policy and critic.
@@ -144,7 +146,6 @@ def test_a_file_with_models_plans_as_the_run_does(
 ) -> None:
     """Up to the 16 bits of its weights; without them it has a policy alone."""
     file, bare = tmp_path / "both.npz", tmp_path / "bare.npz"
-    main = lambda *words: call(lambda: command.run(demonstrate.main), *words)  # noqa: E731
     assert main(f"run={trained}", f"policy={file}", "models=true") == 0
     assert main(f"run={trained}", f"policy={bare}") == 0
     assert "policy and models of" in capsys.readouterr().out
@@ -164,7 +165,6 @@ def test_a_file_holds_the_learner_that_is_asked_for(tmp_path, capfd) -> None:
     """Its own parameters and seed; one that the run does not have is one line."""
     folder, file = tmp_path / "run", tmp_path / "second.npz"
     run(folder, "task=cartpole", "algo=sac", "seed=3", "num_seeds=2")
-    main = lambda *words: call(lambda: command.run(demonstrate.main), *words)  # noqa: E731
     assert main(f"run={folder}", f"policy={file}", "learner=4") == 0
     was, now = load(folder), read(str(file))
     assert now.seeds == (4,)
@@ -179,7 +179,6 @@ def test_a_file_holds_the_reward_and_the_constraint_of_its_run(tmp_path) -> None
     """So its evaluation is that of the run; each can be replaced."""
     folder, file = tmp_path / "run", tmp_path / "aimed.npz"
     run(folder, "task=cartpole", "algo=sac", *AT, "constraint=torque", "constraint.most=0.01")
-    main = lambda *words: call(lambda: command.run(demonstrate.main), *words)  # noqa: E731
     assert main(f"run={folder}", f"policy={file}") == 0
     was, now = (evaluate.evaluate(each, "policy", 2) for each in (load(folder), read(str(file))))
     jax.tree.map(np.testing.assert_array_equal, now, was)

@@ -1,6 +1,5 @@
 """The render command."""
 
-import sys
 from dataclasses import dataclass
 from functools import partial
 from types import SimpleNamespace
@@ -10,6 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from scenes import FIXED
+from tiny import call
 
 from hybrid_rl import render
 from hybrid_rl.analysis import drawing, film
@@ -30,8 +30,7 @@ class Slider:
     spec: Spec = SPEC
 
     def reset(self, key):
-        no = jnp.zeros((), bool)
-        return EnvState(jnp.zeros(1), jnp.zeros(1), jnp.float32(0), no, no, {}, {})
+        return EnvState(jnp.zeros(1), jnp.zeros(1), jnp.float32(0))
 
     def step(self, state, action):
         x = state.data + 0.1 * action
@@ -72,14 +71,7 @@ def trained(monkeypatch):
     return run
 
 
-def call(monkeypatch, *arguments):
-    """Exit code of the command."""
-    monkeypatch.setattr(sys, "argv", ["render", *map(str, arguments)])
-    try:
-        command.run(render.main)
-    except SystemExit as end:
-        return end.code
-    return 0
+draw = partial(call, lambda: command.run(render.main))
 
 
 def test_an_episode_ends_where_the_world_ends(trained):
@@ -92,10 +84,8 @@ def test_an_episode_ends_where_the_world_ends(trained):
     assert (len(poses), total) == (4, 3)
 
 
-def test_the_command_writes_a_video_in_real_time(trained, tmp_path, monkeypatch, capsys, can_draw):
-    if not can_draw:
-        return
-    assert call(monkeypatch, f"run={tmp_path}", "width=64", "height=48") == 0
+def test_the_command_writes_a_video_in_real_time(trained, tmp_path, capsys, draws):
+    assert draw(f"run={tmp_path}", "width=64", "height=48") == 0
     out = tmp_path / "video.mp4"
     assert iio.immeta(out, plugin="pyav")["fps"] == pytest.approx(10)
     assert len(iio.imread(out, plugin="pyav")) == 6
@@ -104,12 +94,10 @@ def test_the_command_writes_a_video_in_real_time(trained, tmp_path, monkeypatch,
     assert last == f"{out}: 5 decisions, return 5.0, step 7,000"
 
 
-def test_the_expert_of_a_task_is_drawn_too(tmp_path, monkeypatch, capsys, can_draw):
+def test_the_expert_of_a_task_is_drawn_too(tmp_path, capsys, draws):
     """Two decisions of Sawyer's."""
-    if not can_draw:
-        return
     small = ["width=64", "height=48", "episode_steps=2"]
-    assert call(monkeypatch, "task=sawyer_push", f"out={tmp_path}/a.mp4", *small) == 0
+    assert draw("task=sawyer_push", f"out={tmp_path}/a.mp4", *small) == 0
     assert len(iio.imread(tmp_path / "a.mp4", plugin="pyav")) == 3
     assert capsys.readouterr().out.splitlines()[-1].endswith(", no success, scripted expert")
 
@@ -135,27 +123,15 @@ def test_success_is_that_of_the_end(trained):
     assert [film.episode(trained, seed=seed).success for seed in (3, 4)] == [True, False]
 
 
-def test_pictures_side_by_side(trained, tmp_path, monkeypatch, capsys, can_draw):
+def test_pictures_side_by_side(trained, tmp_path, capsys, draws):
     """After the decisions that are asked for; the last one again after the end, with a line."""
-    if not can_draw:
-        return
     small = ["width=64", "height=48", f"out={tmp_path / 'a.png'}"]
-    assert call(monkeypatch, "run=x", "at=0,5,20", *small) == 0
+    assert draw("run=x", "at=0,5,20", *small) == 0
     printed = capsys.readouterr().out
     assert "at=20: the episode ends after 5 decisions, shown instead" in printed
     first, middle, last = np.split(iio.imread(tmp_path / "a.png"), 3, axis=1)
     np.testing.assert_array_equal(middle, last)
     assert (first != last).any()
-
-
-def test_a_world_that_cannot_be_drawn_is_one_line(trained, monkeypatch, capsys, tmp_path):
-    monkeypatch.setattr(offscreen, "backend", lambda: "egl")
-    world = SimpleNamespace(spec=SPEC, reset=Slider().reset, step=Slider().step)
-    trained.episode = Episode(world, steps=20)
-    assert call(monkeypatch, f"run={tmp_path}") == 2
-    printed = capsys.readouterr().err
-    assert printed.count("\n") == 1
-    assert "has no `scene` and no `pose`: the world cannot be drawn; write `scene(self)`" in printed
 
 
 @pytest.mark.parametrize(
@@ -170,7 +146,7 @@ def test_a_world_that_cannot_be_drawn_is_one_line(trained, monkeypatch, capsys, 
 )
 def test_bad_usage_is_one_line_and_code_2(trained, monkeypatch, capsys, arguments, line):
     monkeypatch.setattr(offscreen, "backend", lambda: "egl")
-    assert call(monkeypatch, *arguments) == 2
+    assert draw(*arguments) == 2
     printed = capsys.readouterr().err
     assert printed.count("\n") == 1
     assert line in printed
@@ -187,36 +163,32 @@ def test_bad_usage_is_one_line_and_code_2(trained, monkeypatch, capsys, argument
     ids=["beginning", "all", "fewer", "card"],
 )
 def test_a_processor_draws_the_beginning_unless_asked_for_more(
-    trained, tmp_path, monkeypatch, capsys, can_draw, by_processor, more, pictures
+    trained, tmp_path, monkeypatch, capsys, draws, by_processor, more, pictures
 ):
     """The box falls off after 5 decisions; three pictures after the first are the default."""
-    if not can_draw:
-        return
     monkeypatch.setattr(offscreen, "by_processor", lambda: by_processor)
     monkeypatch.setattr(film, "FIRST", 3)
     small = ["width=64", "height=48", f"out={tmp_path / 'a.mp4'}"]
-    assert call(monkeypatch, "run=x", *small, *more) == 0
+    assert draw("run=x", *small, *more) == 0
     assert len(iio.imread(tmp_path / "a.mp4", plugin="pyav")) == pictures
     line = "the beginning, as there is no graphics card; all: episode_steps=20"
     assert (line in capsys.readouterr().out.splitlines()) == (by_processor and not more)
 
 
-def test_a_still_is_of_the_whole_episode(trained, tmp_path, monkeypatch, can_draw):
-    if not can_draw:
-        return
+def test_a_still_is_of_the_whole_episode(trained, tmp_path, monkeypatch, draws):
     monkeypatch.setattr(film, "FIRST", 1)
     small = ["width=64", "height=48", f"out={tmp_path / 'a.png'}"]
-    assert call(monkeypatch, "run=x", *small) == 0
+    assert draw("run=x", *small) == 0
     poses = film.episode(trained).poses
     middle = next(drawing.frames(FIXED, poses[len(poses) // 2][None], 64, 48))
     np.testing.assert_array_equal(iio.imread(tmp_path / "a.png"), middle)
 
 
-def test_a_fast_world_skips_pictures(trained, tmp_path, monkeypatch, can_draw):
+def test_a_fast_world_skips_pictures(trained, tmp_path, can_draw):
     """200 decisions a second: every fourth is drawn, at 50 a second."""
     fast = Slider(end=9, spec=SPEC._replace(dt=0.005))
     trained.episode = Episode(fast, steps=20)
     if can_draw:
-        assert call(monkeypatch, "run=x", f"out={tmp_path}/a.mp4", "width=64", "height=48") == 0
+        assert draw("run=x", f"out={tmp_path}/a.mp4", "width=64", "height=48") == 0
         assert iio.immeta(tmp_path / "a.mp4", plugin="pyav")["fps"] == pytest.approx(50)
         assert len(iio.imread(tmp_path / "a.mp4", plugin="pyav")) == 3

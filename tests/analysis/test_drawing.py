@@ -28,9 +28,7 @@ def positions(number=6):
     return np.linspace(-1, 1, number)[:, None]
 
 
-def test_pictures_show_the_positions(can_draw):
-    if not can_draw:
-        return
+def test_pictures_show_the_positions(draws):
     pictures = list(drawing.frames(FIXED, positions(3), 64, 48))
     assert all(picture.shape == (48, 64, 3) for picture in pictures)
     red = np.array([centre(picture, 0) for picture in pictures])
@@ -39,17 +37,13 @@ def test_pictures_show_the_positions(can_draw):
     assert centre(pictures[1], 2)[0] < 0.4  # y is up
 
 
-def test_without_a_camera_of_its_own_the_robot_is_followed(can_draw):
-    if not can_draw:
-        return
+def test_without_a_camera_of_its_own_the_robot_is_followed(draws):
     near, far = drawing.frames(FREE, np.array([[0.0], [5.0]]), 64, 48)
     np.testing.assert_allclose(centre(near, 0), centre(far, 0), atol=0.05)
     assert len(list(drawing.frames("<mujoco/>", np.zeros((1, 0)), 64, 48))) == 1
 
 
-def test_an_mp4_plays_everywhere(tmp_path, can_draw):
-    if not can_draw:
-        return
+def test_an_mp4_plays_everywhere(tmp_path, draws):
     out = drawing.draw(FIXED, positions(), tmp_path / "new" / "a.mp4", 25, 64, 48)
     values = iio.immeta(out, plugin="pyav")
     assert (values["codec"], values["video_format"], values["fps"]) == ("h264", "yuv420p", 25)
@@ -59,9 +53,7 @@ def test_an_mp4_plays_everywhere(tmp_path, can_draw):
     assert [path.name for path in out.parent.iterdir()] == ["a.mp4"]
 
 
-def test_a_gif_goes_round_at_no_more_than_its_speed(tmp_path, can_draw):
-    if not can_draw:
-        return
+def test_a_gif_goes_round_at_no_more_than_its_speed(tmp_path, draws):
     out = drawing.draw(FIXED, positions(), tmp_path / "a.gif", 40, 64, 48)
     values = iio.immeta(out)
     assert (values["duration"], values["loop"]) == (50, 0)  # [ms]: every second of 40 a second
@@ -94,9 +86,7 @@ def test_a_full_disk_is_one_line_and_no_file(tmp_path, monkeypatch, name):
     assert [*tmp_path.iterdir()] == []
 
 
-def test_a_png_is_the_picture_halfway(tmp_path, can_draw):
-    if not can_draw:
-        return
+def test_a_png_is_the_picture_halfway(tmp_path, draws):
     out = drawing.draw(FIXED, positions(5), tmp_path / "a.png", 25, 64, 48)
     np.testing.assert_array_equal(
         iio.imread(out), next(drawing.frames(FIXED, positions(5)[2:3], 64, 48))

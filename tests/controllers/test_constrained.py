@@ -31,8 +31,7 @@ class Sledge:
     spec: Spec = Spec(obs=1, act=1, dt=0.1)
 
     def reset(self, key: Array) -> EnvState:
-        no = jnp.zeros((), bool)
-        return EnvState((), jnp.zeros(1), jnp.zeros(()), no, no)
+        return EnvState((), jnp.zeros(1), jnp.zeros(()))
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         after = self.dynamics(state.obs, action)

@@ -78,8 +78,7 @@ class Counter:
 
     def state(self, x: Array) -> EnvState:
         """The state at x []."""
-        no = jnp.zeros((), bool)
-        return EnvState(x, jnp.stack((x, x)), x, x > 2, no, {}, {})
+        return EnvState(x, jnp.stack((x, x)), x, x > 2)
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """One decision."""

@@ -169,8 +169,6 @@ def test_wrong_arguments_are_refused(tmp_path):
         OnlineLearner(METHOD, act=1)
     with pytest.raises(UsageError, match="folder="):
         OnlineLearner.load(tmp_path)
-    with jax.enable_x64(True), pytest.raises(UsageError, match="JAX_ENABLE_X64: is on"):
-        made()
     with pytest.raises(UsageError, match=r"resume=: is of train; OnlineLearner has .* load"):
         OnlineLearner(["resume=runs/mine"], obs=2, act=1)
 

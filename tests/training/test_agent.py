@@ -29,8 +29,8 @@ class Clock:
     spec: Spec = Spec(obs=1, act=1, dt=0.1)
 
     def reset(self, key: Array) -> EnvState:
-        start, no = jax.random.uniform(key, (1,)), jnp.zeros((), bool)
-        return EnvState(start, start, jnp.zeros(()), no, no, {}, {})
+        start = jax.random.uniform(key, (1,))
+        return EnvState(start, start, jnp.zeros(()))
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         x = state.data + 1

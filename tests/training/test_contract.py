@@ -262,7 +262,3 @@ def test_a_right_method_learns_and_acts_with_python_numbers_in_its_states(tmp_pa
     assert curve.each[0, -1] == np.arange(15, 35).mean()  # from the fifth decision on, of 20 to 39
     policy = result.load().policy()
     assert policy(np.array([1.0, 0.0, 0.0])).shape == (1,)
-    with pytest.raises(ValueError, match=r"obs: entry 1 is not finite"):
-        policy(np.array([1.0, np.nan, 0.0]))
-    with pytest.raises(ValueError, match=r"learners: one and two both learn params\.model"):
-        replace(agent, learners={"one": Fit(), "two": Fit()})

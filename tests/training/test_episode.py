@@ -23,8 +23,7 @@ class Counter:
     def reset(self, key: Array) -> EnvState:
         """A count below zero, which marks a new episode."""
         start = -1.0 - jax.random.uniform(key, (1,))
-        no = jnp.zeros((), bool)
-        return EnvState(jnp.zeros(()), start, jnp.zeros(()), no, no, {}, {})
+        return EnvState(jnp.zeros(()), start, jnp.zeros(()))
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         count = state.data + 1

@@ -13,6 +13,7 @@ from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.critics.ensemble_q import EnsembleQ
 from hybrid_rl.envs.analytic.point_mass import PointMass
 from hybrid_rl.learners.model_based import ModelBased
+from hybrid_rl.models.exact import Exact
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
 from hybrid_rl.rewards.known import KnownReward
 from hybrid_rl.training.episode import Episode
@@ -27,20 +28,11 @@ POLICY = TanhGaussian((16,))
 
 
 @dataclass(frozen=True)
-class Drawn:
-    """The world's dynamics, for a batch."""
-
-    def lift(self, params: Any, obs: Array) -> Array:
-        return obs
-
-    def init(self, key: Array, spec: Any) -> tuple[()]:
-        return ()
-
-    def step(self, params: Any, x: Array, u: Array) -> Array:
-        return WORLD.dynamics(x, u)
+class Drawn(Exact):
+    """The world's dynamics, also for a batch."""
 
     def draw(self, params: Any, x: Array, u: Array, noise: Array, key: Array) -> Array:
-        return jax.vmap(WORLD.dynamics)(x, u)
+        return jax.vmap(self.world.dynamics)(x, u)
 
 
 @dataclass(frozen=True)
@@ -53,7 +45,7 @@ class Corner:
 
 
 EPISODE = Episode(WORLD, steps=30, reward=Corner())
-MODEL: Any = Drawn()
+MODEL: Any = Drawn(WORLD)
 LEARNER = ModelBased(
     POLICY,
     EnsembleQ((16,), normalise=True, scale=True),
@@ -122,7 +114,7 @@ def test_a_walk_stays_where_the_model_knows_no_next_state() -> None:
             """NaN right of the middle."""
             return jnp.where(x[:, :1] > 0, jnp.nan, super().draw(params, x, u, noise, key))
 
-    model: Any = Lost()
+    model: Any = Lost(WORLD)
     x = jnp.array([[0.5, 0.0, 0.0, 0.0], [-9.0, 0.0, 0.0, 0.0]])
     part = Imagination(replace(LEARNER, model=model), walk=5)
     states = np.asarray(part.walked(PARAMS, x, jax.random.key(0))).reshape(5, 2, -1)

@@ -84,10 +84,8 @@ def test_frames_have_the_errors_of_the_log(contact_runs: Runs, tmp_path: Path) -
         assert got["map"][name] == pytest.approx(values[SEED], rel=1e-3)
 
 
-def test_the_film_of_training(contact_runs: Runs, tmp_path: Path, can_draw: bool) -> None:
+def test_the_film_of_training(contact_runs: Runs, tmp_path: Path, draws: None) -> None:
     """The panel, as wide as high, changes with time."""
-    if not can_draw:
-        return
     size = "width=64", "height=48", "episode_steps=3"
     line = f"run={contact_runs['map']}", f"out={tmp_path}/a.gif", *size
     assert call(lambda: command.run(belief_video.main), *line) == 0

@@ -1,4 +1,4 @@
-"""Commands on the library's pages compose; those that do not train run in a small size."""
+"""Commands on the pages compose; those that do not train run in a small size."""
 
 import re
 from functools import partial
@@ -17,15 +17,17 @@ SMALL = {  # command -> arguments that make it small
 IN_ITS_WORLD = {"constraint": "speed", "constraint.most": "1"}  # a pendulum has no pitch
 IMAGINED = {"imagine.updates": "2", "imagine.critic_first": "1"}
 FILE_OR_NUMBER = re.compile(r"[\w/]+(?=\.\w+$)|[\d.,]+$")
+PAGES = [*commands.LIBRARY, *commands.RESULTS]
+over_pages = pytest.mark.parametrize("page", PAGES)
 METRICS = {"train/return", "eval/return", "eval/policy_return"}  # of the small run
 
 
-@pytest.mark.parametrize("page", commands.LIBRARY)
+@over_pages
 def test_training_commands_compose(page):
     commands.compose([page])
 
 
-@pytest.mark.parametrize("page", commands.LIBRARY)
+@over_pages
 def test_other_commands_have_the_arguments_of_the_page(page):
     commands.check_arguments(page)
 
@@ -36,7 +38,7 @@ def programs():
     A number or a name of a file makes no difference, but the file's suffix does.
     """
     found = {}
-    for page in [*commands.LIBRARY, *commands.RESULTS]:
+    for page in PAGES:
         for name, words in commands.commands(page):
             given = dict(word.split("=", 1) for word in words if "=" in word)
             if not runs_here(name, given):
