@@ -179,7 +179,7 @@ class Actor:
             return None
         _sleep_until(min(stamp + lag * dt - self._lag, begin + LATEST * dt))
         self._apply(action)
-        now, row = time.monotonic(), np.zeros((), self._kind)
+        now, row = self._past[0][0], np.zeros((), self._kind)
         row["obs"], row["action"], row["version"] = obs, action, self._version
         row["late"], row["age"], row["time"] = now - begin, now - stamp, time.time()
         row["times"], row["sent"] = zip(*((at - stamp, u) for at, u in self._past), strict=True)

@@ -97,7 +97,7 @@ RIG = """
       <joint type="slide" axis="1 0 0"/> <joint type="slide" axis="0 0 1"/>
       <geom type="sphere" size="0.05" mass="1" friction="0.3"/>
       <body pos="0 0 0.1">
-        <joint name="hinge" axis="0 1 0" stiffness="1" damping="0.1" armature="0.01"/>
+        <joint name="hinge" axis="0 1 0" stiffness="1" damping="0.1" armature="0.01" frictionloss="0.1"/>
         <geom type="capsule" size="0.02" fromto="0 0 0 0.1 0 0.3" mass="0.5" contype="0"/>
         <site name="tip" pos="0.1 0 0.3"/>
       </body>
@@ -108,7 +108,7 @@ RIG = """
     </body>
   </worldbody>
   <contact><pair geom1="floor" geom2="ball" friction="0.3 0.3 0.005 0.0001 0.0001"/></contact>
-  <actuator><position joint="hinge" kp="5" kv="0.2"/></actuator>
+  <actuator><position joint="hinge" kp="5" kv="0.2" forcerange="-4 4"/></actuator>
   <sensor>
     <jointvel joint="hinge"/>
     <framepos name="tip" objtype="site" objname="tip"/>
