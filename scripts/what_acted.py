@@ -31,7 +31,7 @@ ARGUMENTS = (
     Argument("lost", 0.01, "share of the datagrams that are lost", number()),
     Argument("decisions", 1000, "how many, all of them random", whole(200)),
     Argument("port", 7300, "of the stand-in", whole()),
-    Argument("out", "", "JSON", output(), needed="out=FILE.json"),
+    Argument("out", "", "JSON", needed="out=FILE.json"),
 )
 
 
@@ -77,6 +77,7 @@ def measured(physics: Remembering, rows: np.ndarray) -> dict[str, float]:
 def main() -> None:
     """The command."""
     given: Any = read(__doc__, ARGUMENTS)[0]
+    out = output("out", given["out"], (".json",))
     late = (given[key] for key in ("latency_s", "jitter_s", "lost"))
     physics = Remembering(HalfCheetah, given["port"], *late)
     with tempfile.TemporaryDirectory() as folder:
@@ -90,7 +91,7 @@ def main() -> None:
         size = HalfCheetah.obs, len(HalfCheetah.low)
         log = RowLog(next(Path(folder).glob("run/robot/rows*")), Spec(*size, HalfCheetah.dt))
         rows = np.array([log.read(number) for number in range(log.count())])
-    given["out"].write_text(json.dumps(measured(physics, rows), indent=1) + "\n")
+    out.write_text(json.dumps(measured(physics, rows), indent=1) + "\n")
 
 
 if __name__ == "__main__":

@@ -102,6 +102,14 @@ class Exploring:
         """An episode begins."""
         self._acting.begin()
 
+    @property
+    def predicts(self) -> bool:
+        """Whether it acts at the observation predicted for when its action acts."""
+        control = self._acting.control
+        return isinstance(
+            control.inner if isinstance(control, HistoryState) else control, AheadState
+        )
+
     def informed(self, sent: np.ndarray, lag: float) -> None:
         """What was sent, [K + 1, m] or more, the newest last; how late it acts [decisions]."""
         given = self._acting.control, sent.astype(np.float32), np.float32(lag)

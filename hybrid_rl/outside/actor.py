@@ -2,7 +2,7 @@
 
     observe -> decide with the newest parameters -> limit -> hold -> apply -> append a row -> sleep
 
-An action is held back until it acts whole decisions after its observation (`training.ahead`).
+What predicts holds an action back until it acts whole decisions after its observation.
 
 Files in a folder connect it with the learner: `rows` (row_log) in one direction, `parameters`
 (handover) in the other, and `stop`, whose existence ends the motion. So either process can be
@@ -177,7 +177,8 @@ class Actor:
         action = np.clip(np.clip(u, last - rate, last + rate), -1, 1)
         if not np.isfinite(action).all():
             return None
-        _sleep_until(min(stamp + lag * dt - self._lag, begin + LATEST * dt))
+        if self._decide.predicts:
+            _sleep_until(min(stamp + lag * dt - self._lag, begin + LATEST * dt))
         self._apply(action)
         now, row = self._past[0][0], np.zeros((), self._kind)
         row["obs"], row["action"], row["version"] = obs, action, self._version

@@ -55,7 +55,8 @@ def test_rows_are_decisions_in_order(agent, tmp_path):
 
 def test_a_row_holds_what_was_sent_and_when(agent, tmp_path):
     """The decisions before it, as far as they follow each other; at first the safe action."""
-    _, rows = moved(agent, tmp_path, Counting)
+    actor, rows = moved(agent, tmp_path, Counting)
+    assert not actor._decide.predicts  # so it holds no action back
     assert {float(u) for row in rows for u in row["sent"][row["times"] < -9, 0]} == {-0.5}
     pairs = [(a, b) for a, b in pairwise(rows) if a["stretch"] == b["stretch"]]
     assert len(pairs) > 5
@@ -83,7 +84,8 @@ def test_it_acts_at_the_observation_predicted_for_then(agent, tmp_path):
         def greedy(self):
             return self
 
-    _, rows = moved(replace(agent, controller=Telling()), tmp_path, Counting, lag=0.006)
+    actor, rows = moved(replace(agent, controller=Telling()), tmp_path, Counting, lag=0.006)
+    assert actor._decide.predicts
     half = [row for row in rows if row["obs"][1] % 2 == 0]
     assert all(row["action"] == pytest.approx(0.5 * row["sent"][1]) for row in half)
     pairs = [(8 * row["action"][0], row["times"][0]) for row in rows if row["obs"][1] % 2]
