@@ -97,13 +97,13 @@ RIG = """
       <joint type="slide" axis="1 0 0"/> <joint type="slide" axis="0 0 1"/>
       <geom type="sphere" size="0.05" mass="1" friction="0.3"/>
       <body pos="0 0 0.1">
-        <joint name="hinge" axis="0 1 0" stiffness="1" damping="0.1" armature="0.01" frictionloss="0.1"/>
+        <joint name="hinge" axis="0 1 0" stiffness="1" damping="0.1" armature="0.01"
+          frictionloss="0.1"/>
         <geom type="capsule" size="0.02" fromto="0 0 0 0.1 0 0.3" mass="0.5" contype="0"/>
         <site name="tip" pos="0.1 0 0.3"/>
       </body>
     </body>
-    <body pos="0 2 0.05">
-      <joint type="slide" axis="1 0 0"/> <joint type="slide" axis="0 0 1"/>
+    <body pos="0 2 0.05"> <joint type="slide" axis="1 0 0"/> <joint type="slide" axis="0 0 1"/>
       <geom name="ball" type="sphere" size="0.05" mass="1" contype="0"/>
     </body>
   </worldbody>
