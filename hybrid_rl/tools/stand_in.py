@@ -36,6 +36,7 @@ from hybrid_rl.envs.adapters.stand_in import (
 
 DEAF_S = 0.25  # [s] without an action, after which the stand-in lets go
 DEAF_MOST_S = 60.0  # [s] of one `unplug`
+POLL_S = 1e-3  # [s] between looks at the observations on their way
 BEHIND = 20  # steps behind the clock, after which it begins again
 KINDS: dict[str, type[StandIn]] = {"halfcheetah": HalfCheetah, "cartpole": Cartpole}  # physics
 ARGUMENTS = (
@@ -93,7 +94,8 @@ class Physics:
         while time.monotonic() - first < seconds and os.getppid() == parent:
             due = began + k * self.kind.step_s
             while (left := due - time.monotonic()) > 0:
-                time.sleep(max(left - 3e-4, 0))
+                self._deliver()
+                time.sleep(min(max(left - 3e-4, 0), POLL_S))
             self.late.append(time.monotonic() - due)
             self._hear()
             self.env.do_simulation(self.action, 1)
@@ -167,10 +169,15 @@ class Physics:
             self.action = np.clip(action, self.kind.low, self.kind.high)
 
     def _say(self, k: int) -> None:
-        """Send the observation, and those that are due."""
-        now, obs = time.monotonic(), np.asarray(self.env._get_obs(), "<f4")
-        head = OBSERVED.pack(self.episode, k, now, self.late[-1])
+        """Send the observation of the end of this step, and those that are due."""
+        obs, then = np.asarray(self.env._get_obs(), "<f4"), time.monotonic() + self.kind.step_s
+        head = OBSERVED.pack(self.episode, k, then, self.late[-1])
         self._sent(self.outbox, head + obs.tobytes())
+        self._deliver()
+
+    def _deliver(self) -> None:
+        """Send the observations that are due."""
+        now = time.monotonic()
         ready = [each for each in self.outbox if each[0] <= now]
         self.outbox = deque(each for each in self.outbox if each[0] > now)
         if self.driver is not None:
