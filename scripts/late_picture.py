@@ -1,4 +1,4 @@
-"""The picture of docs/results/real_time.md: returns by how late actions act.
+"""The picture of docs/results/real_time.md: returns by how late actions act, and in real time.
 
 python -m scripts.late_picture file=docs/results/late.json out=docs/results/late.png
 """
@@ -9,6 +9,7 @@ from typing import Any
 
 import matplotlib
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hybrid_rl.analysis.curves import band, iqm
@@ -19,7 +20,13 @@ ARGUMENTS = (
     Argument("file", "docs/results/late.json", "returns by robot and delay"),
     Argument("out", "late.png", "the picture"),
 )
-TITLES = {"halfcheetah": "half-cheetah", "hopper": "hopper"}
+TITLES = {"halfcheetah": "half-cheetah, simulated", "hopper": "hopper, simulated"}
+EPISODE_MIN = 1000 / 20 / 60  # of a half-cheetah in real time
+REAL = {  # run in real time -> its name, colour
+    "halfcheetah, on time": ("not late", "#000000"),
+    "halfcheetah, late, held back": ("20 ms each way", "#009E73"),
+    "halfcheetah, late": ("20 ms, by a straight line", "#56B4E9"),
+}
 SHOWN = {  # what ends the name of an arm -> its name, colour, mark
     "": ("whole decisions, held back", "#000000", "o-"),
     ", interpolated": ("parts of a decision, by a straight line", "#56B4E9", "s"),
@@ -32,11 +39,14 @@ def delay(arm: str) -> float:
     return 0.0 if arm == "not late" else float(arm.split()[0])
 
 
-def draw(tasks: dict[str, Any]) -> Figure:
-    """A panel for each robot: interquartile mean and band of the seeds at each delay."""
+def draw(found: dict[str, Any]) -> Figure:
+    """Interquartile mean and band of the seeds: of each robot by delay, and by minutes."""
+    tasks = found["tasks"]
     with matplotlib.rc_context(STYLE):
-        picture = Figure(figsize=(4.2 * len(TITLES), 3.2), layout="constrained")
-        for axes, (task, title) in zip(picture.subplots(1, 2), TITLES.items(), strict=True):
+        picture = Figure(figsize=(12, 3.2), layout="constrained")
+        *panels, last = picture.subplots(1, 1 + len(TITLES))
+        in_real_time(last, found["real time"])
+        for axes, (task, title) in zip(panels, TITLES.items(), strict=True):
             for end, (name, ink, mark) in SHOWN.items():
                 arms = [arm for arm in tasks[task]["arms"] if arm.partition("late")[2] == end]
                 each = [np.array(tasks[task]["arms"][arm]["returns"])[:, None] for arm in arms]
@@ -48,14 +58,27 @@ def draw(tasks: dict[str, Any]) -> Figure:
                 axes.vlines(x, *ends, color=ink, lw=2, alpha=0.5)
             axes.set(title=title, xlabel="actions are late by [decisions]", ylabel="return")
             axes.axhline(0, color="0.8", lw=1)
-        axes.figure.axes[0].legend(frameon=False, fontsize="small")
+        shown = panels[0].get_legend_handles_labels()
+        panels[1].legend(*shown, loc="lower right", frameon=False, fontsize="small")
     return picture
+
+
+def in_real_time(axes: Axes, runs: dict[str, Any]) -> None:
+    """Training returns of half-cheetahs over the minutes of their lives."""
+    for run, (name, ink) in REAL.items():
+        returns = np.array(runs[run]["training"])
+        minutes = EPISODE_MIN * np.arange(1, 1 + returns.shape[1])
+        axes.plot(minutes, iqm(returns), color=ink, label=name)
+        axes.fill_between(minutes, *band(returns), color=ink, alpha=0.2, lw=0)
+    axes.set(title="half-cheetah in real time", xlabel="minutes", ylabel="training return")
+    axes.axhline(0, color="0.8", lw=1)
+    axes.legend(frameon=False, fontsize="small")
 
 
 def main() -> None:
     """The command."""
     given: Any = read(__doc__, ARGUMENTS)[0]
-    draw(json.loads(Path(given["file"]).read_text())["tasks"]).savefig(given["out"], dpi=150)
+    draw(json.loads(Path(given["file"]).read_text())).savefig(given["out"], dpi=150)
 
 
 if __name__ == "__main__":
