@@ -10,7 +10,7 @@ from omegaconf import DictConfig
 from hybrid_rl.cli import interrupt
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import assembled, launch, members
-from hybrid_rl.run.job import Output
+from hybrid_rl.run.launch import Output
 from hybrid_rl.settings import build as config
 from hybrid_rl.settings.build import Run
 from hybrid_rl.settings.words import typed_values

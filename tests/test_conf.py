@@ -17,8 +17,7 @@ from tiny import SMALL
 from hybrid_rl.controllers.gradient import GradientController
 from hybrid_rl.files import targets as parts
 from hybrid_rl.settings import build as config
-from hybrid_rl.settings.groups import file, options
-from hybrid_rl.settings.registry import choices
+from hybrid_rl.settings.groups import choices, file, options
 
 PARTS = {  # every class that a choice of a group, or a file of conf/, names
     *(kind for names in choices(config.CONF).values() for kind in names.values()),

@@ -28,8 +28,7 @@ from hybrid_rl.settings.compose import (
     keys_of,
     settings_keys,
 )
-from hybrid_rl.settings.groups import CONF, groups, search_path
-from hybrid_rl.settings.registry import register
+from hybrid_rl.settings.groups import CONF, groups, register, search_path
 from hybrid_rl.settings.values import (
     COUNTS,
     PAID,

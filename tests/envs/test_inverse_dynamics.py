@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.envs.mujoco.inverse_dynamics import torques
+from hybrid_rl.envs.mujoco.kinematics import torques
 from hybrid_rl.envs.sawyer_torque import asset
 
 

@@ -10,7 +10,7 @@ import pytest
 from jax import Array
 from toys import begun, learned
 
-from hybrid_rl.learners.model import ModelLearner, held_out
+from hybrid_rl.learners.model import ModelLearner, flags
 from hybrid_rl.models.ensemble import Ensemble
 from hybrid_rl.models.gaussian import Gaussian
 from hybrid_rl.objectives.predicted_return import PredictedReturn
@@ -159,7 +159,7 @@ INIT, UPDATE = jax.jit(lambda key: HELD.init(key, SPEC)), jax.jit(HELD.update)
 def test_held_out_decisions_are_not_learned_from() -> None:
     """Other rewards and outcomes of them leave all but their loss unchanged, to the bit."""
     batch, key = draw(jax.random.key(2), 3 * 128), jax.random.key(0)
-    held = held_out.flags(batch.obs, batch.action, 0.2)
+    held = flags(batch.obs, batch.action, 0.2)
     assert 40 < int(held.sum()) < 120
     far = batch._replace(
         reward=batch.reward + 5 * held, next_obs=batch.next_obs + 9.0 * held[:, None]
@@ -187,7 +187,7 @@ def test_held_out_losses_are_a_running_mean_that_ranks_the_members() -> None:
     for n in range(1, 4):
         batch = draw(jax.random.key(n), 3 * 128)
         state, metrics = UPDATE(state, Params(), batch, jax.random.key(0))
-        held = np.flatnonzero(held_out.flags(batch.obs, batch.action, 0.2))[: round(0.2 * 384)]
+        held = np.flatnonzero(flags(batch.obs, batch.action, 0.2))[: round(0.2 * 384)]
         rows = [x[held] for x in (batch.obs, batch.action, batch.next_obs)]
         for i in range(3):
             own = jax.tree.map(lambda w, i=i: w[i], state.model["weights"])
