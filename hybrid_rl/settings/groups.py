@@ -57,11 +57,7 @@ def groups(config_dir: str | Path | None = None) -> set[str]:
 
 
 def file(group: str, name: str) -> Path:
-    """The YAML file of an option of the library or of the thesis.
-
-    Raises:
-        FileNotFoundError: if there is none.
-    """
+    """The YAML file of an option of the library or of the thesis."""
     for conf in (CONF, THESIS):
         if (path := conf / group / f"{name}.yaml").is_file():
             return path

@@ -30,13 +30,7 @@ def needs_world(controller: Any) -> bool:
 
 
 def check_members(agent: Any) -> None:
-    """Check that controller and learners have the methods and the fields of their protocols.
-
-    Raises:
-        PartError: in one line, for what is missing or has another form.
-        ValueError: for two learners of one field of `Params`, or demonstrations whose rewards are
-            not those of the run.
-    """
+    """Check that controller and learners have the methods and the fields of their protocols."""
     if agent.replay.num_demonstrated(agent.num_envs):
         agent.episode.check_demonstrations()
     Contract(agent.controller, Controller, agent.spec).check_members()
@@ -57,12 +51,7 @@ def check_members(agent: Any) -> None:
 
 
 def check(agent: Any, controllers: Iterable[Any]) -> None:
-    """Check the parts of an Agent, and the controllers that act with what it learns.
-
-    Raises:
-        PartError: in one line: the file and line, what a method gives, and what it must give.
-        ValueError: for a part whose parameters no learner gives, or gives in another form.
-    """
+    """Check the parts of an Agent, and the controllers that act with what it learns."""
     controllers = list({id(each): each for each in controllers}.values())  # full may be policy
     whole = [*controllers, *agent.learners.values()]
     for of in [*_contracts(whole, agent.seen)]:
