@@ -8,8 +8,7 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.outside.host_loop import HostLoop
 from hybrid_rl.outside.robot_loop import RobotLoop
 from hybrid_rl.training.agent import Agent
-from hybrid_rl.training.axis import Axis
-from hybrid_rl.training.loop import Loop
+from hybrid_rl.training.loop import Axis, Loop
 
 
 def loop_of(

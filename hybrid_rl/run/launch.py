@@ -35,8 +35,7 @@ from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings.build import Run
 from hybrid_rl.settings.values import check, one_of, whole
 from hybrid_rl.settings.words import plain
-from hybrid_rl.training.axis import Axis
-from hybrid_rl.training.loop import Loop
+from hybrid_rl.training.loop import Axis, Loop
 
 OF_A_SESSION = ("resume", "total_steps", "run_dir", "version", "logger")
 OF_A_SESSION += ("compile_cache", "precision", "recipe", "config_dir")

@@ -25,7 +25,7 @@ from hybrid_rl.settings import words as overrides
 from hybrid_rl.settings.build import Run
 from hybrid_rl.settings.complete import LACKING, refusal, select, source
 from hybrid_rl.settings.words import raw_values
-from hybrid_rl.training.axis import Axis, DifferError
+from hybrid_rl.training.loop import Axis, DifferError
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import pytest
 
 from hybrid_rl.run import session
 from hybrid_rl.run.logs import records
-from hybrid_rl.training.axis import Axis
+from hybrid_rl.training.loop import Axis
 
 WORLDS = 2
 

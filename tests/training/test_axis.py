@@ -9,7 +9,7 @@ import pytest
 from hybrid_rl.critics.ensemble_q import EnsembleQ
 from hybrid_rl.learners.sac import SAC
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
-from hybrid_rl.training.axis import Axis, DifferError
+from hybrid_rl.training.loop import Axis, DifferError
 
 ONE = SAC(TanhGaussian(hidden=(4,)), EnsembleQ(hidden=(4,)), discount=0.9)
 OTHER = replace(ONE, policy=TanhGaussian(hidden=(4,), log_std_max=1.0), discount=0.95)
