@@ -113,7 +113,9 @@ class Sweeper:
     def sweep(self, arguments: list[str]) -> Any:
         """Run all jobs; end the process with the highest exit code if one failed."""
         require_slurm(str(self.config.hydra.runtime.choices["hydra/launcher"]))
-        jobs = jobs_of(self._parsed(typed(arguments)))
+        parser = OverridesParser.create(config_loader=self.hydra_context.config_loader)
+        given = [*(f"{k}={v}" for k, v in self.params.items()), *typed(arguments)]
+        jobs = jobs_of(parser.parse_overrides(given))
         configs = self._checked(jobs)
         folder = Path(str(self.config.hydra.sweep.dir))
         folder.mkdir(parents=True, exist_ok=True)
@@ -131,11 +133,6 @@ class Sweeper:
         worst = max(result["code"] for result in results.values())
         if worst:
             sys.exit(worst)
-
-    def _parsed(self, arguments: Sequence[str]) -> list[Override]:
-        """The overrides of the command line and of hydra.sweeper.params."""
-        parser = OverridesParser.create(config_loader=self.hydra_context.config_loader)
-        return parser.parse_overrides([*(f"{k}={v}" for k, v in self.params.items()), *arguments])
 
     def _forced(self, job: Sequence[str]) -> list[str]:
         """The overrides of a job as Hydra takes them."""

@@ -200,7 +200,9 @@ def _begin(
     values = [member.values for member in members]
     axis, first = axis_of(values, runs), start.joined(starts)
     fits(runs)
-    _check_logger(members[0].config.get("logger"))
+    logger = one_of("logger", members[0].config.get("logger"), (None, "wandb"))
+    if logger is not None and find_spec("wandb") is None:
+        raise UsageError(f"logger=wandb: not installed; {install('wandb')}")
     with folder.claim_folders([member.config for member in members]) as folders:
         return _run(Job(runs, folders, values, axis), handled, output, first)
 
@@ -233,12 +235,6 @@ def _resume(
                 runs.append(configuration.built(config))
             refuse_edits(config, run_dir)  # also those of a process that had it until now
         return _run(Job(runs, folders, values, axis_of(values, runs)), handled, output)
-
-
-def _check_logger(name: str | None) -> None:
-    """Raise UsageError for a logger that is unknown or not installed."""
-    if one_of("logger", name, (None, "wandb")) is not None and find_spec("wandb") is None:
-        raise UsageError(f"logger=wandb: not installed; {install('wandb')}")
 
 
 def fits(runs: Sequence[Run]) -> str:

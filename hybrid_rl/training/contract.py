@@ -130,7 +130,8 @@ def _contracts(whole: Any, spec: Spec) -> Iterator[Contract]:
 def check_parameters(whole: Any, learned: Mapping[str, Any], spec: Spec) -> None:
     """Raise ValueError for a policy, model or the like that no learner trains, or another form."""
     for owner, name, part in _with_parameters(whole):
-        needs, has = _parameters(part, spec), leaves(learned.get(name))
+        needs = leaves(jax.eval_shape(lambda key, of=part: of.init(key, spec), jax.random.key(0)))
+        has = leaves(learned.get(name))
         uses = "learns with" if callable(getattr(owner, "update", None)) else "acts by"
         line = f"{name}={type(part).__name__}: {type(owner).__name__} {uses} it"
         if needs and name not in learned:
@@ -142,11 +143,6 @@ def check_parameters(whole: Any, learned: Mapping[str, Any], spec: Spec) -> None
             if needs[at] != has.get(at):
                 differ = f"{needs[at]} in it and {has.get(at)} in the learner's"
                 raise ValueError(f"{line}, but {at} is {differ}; give both the same {name}")
-
-
-def _parameters(part: Any, spec: Spec) -> dict[str, str]:
-    """Path of each parameter of a part -> its type."""
-    return leaves(jax.eval_shape(lambda key: part.init(key, spec), jax.random.key(0)))
 
 
 def _with_parameters(whole: Any) -> Iterator[tuple[Any, str, Any]]:

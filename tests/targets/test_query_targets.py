@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from toys import begun
 
-from hybrid_rl.core.teaching import Labels, Queried
+from hybrid_rl.learners.dagger import Labels, Queried
 from hybrid_rl.policies.deterministic import Deterministic
 from hybrid_rl.targets.policy_residual import PolicyResidual
 from hybrid_rl.types import Params, Spec
