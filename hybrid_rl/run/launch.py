@@ -18,7 +18,6 @@ from hybrid_rl.files.atomic import naming, refuse_link
 from hybrid_rl.files.lock import lock
 from hybrid_rl.files.reading import json_file
 from hybrid_rl.networks import precision
-from hybrid_rl.outside.loops import loop_of
 from hybrid_rl.run import folder, start
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.checkpoints.store import Shelf
@@ -27,7 +26,7 @@ from hybrid_rl.run.logs.progress import Progress
 from hybrid_rl.run.logs.records import Row, changes, flatten_keys
 from hybrid_rl.run.machine import memory, provenance
 from hybrid_rl.run.machine.jax_settings import prepare, refuse_x64
-from hybrid_rl.run.members import Member, axis_of, joined
+from hybrid_rl.run.members import Member, axis_of, joined, loop_of
 from hybrid_rl.run.schedule import Schedule
 from hybrid_rl.run.session import Session
 from hybrid_rl.run.start import Start

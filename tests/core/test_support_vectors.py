@@ -11,7 +11,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from hybrid_rl.core import support_vectors as svm
+from hybrid_rl.beliefs import support_vectors as svm
 
 LENGTH = 0.08
 FILE = Path(__file__).with_name("svc.json")
