@@ -52,7 +52,7 @@ EACH = [  # every method on one task, the default on the default task, one on ev
 ]
 RUN = {  # methods that run here, one of a kind; test_learning.py runs four, thesis/tests more
     *("hybrid_deterministic", "hybrid_bc", "fisher", "kle3", "kle3_ddpg", "dagger"),
-    *("koopman_active", "localisation"),
+    "koopman_active",
 }
 
 

@@ -163,7 +163,7 @@ def _judge(text: str, near: Path | None) -> None:
             source = _ours(names[1:], ("envs",))
         elif names[:2] == ["gymnasium", "envs"]:
             source = below(names)
-        elif absent(names[0]) or (not name.isidentifier() and targets.registers(names)):
+        elif absent(names[0]) or (not name.isidentifier() and registers(names)):
             continue
         else:
             source = theirs(names, near)

@@ -71,9 +71,9 @@ def test_reward_discount_learns_a_value() -> None:
     reward = RewardNetwork(hidden=(32,))
     learner = ModelLearner(Gaussian(hidden=(8,)), reward, reward_discount=0.8)
     at = (jnp.zeros(2), jnp.zeros(1), jnp.zeros(2))
-    going = trained(learner, 4000, endless).reward
+    going = trained(learner, 2000, endless).reward
     assert float(reward.outcome(Params(reward=going), *at)[0]) == pytest.approx(5, abs=0.4)
-    ended = trained(learner, 2000, lambda key: endless(key, 1.0)).reward
+    ended = trained(learner, 1000, lambda key: endless(key, 1.0)).reward
     assert float(reward.outcome(Params(reward=ended), *at)[0]) == pytest.approx(1, abs=0.1)
 
 
@@ -117,7 +117,7 @@ def test_mean_and_standard_deviation_are_learned() -> None:
     """Without a reward; both as functions of the state, in its units."""
     model = Gaussian(hidden=(64,), activation="silu", state_noise=True)
     learner = ModelLearner(model, updates=1)
-    state, metrics = learned(learner, SPEC, draw_noisy, 4000)
+    state, metrics = learned(learner, SPEC, draw_noisy, 2000)
     assert (learner.owns, list(learner.params(state))) == (("model",), ["model"])
     params, loss = Params(**learner.params(state)), np.asarray(metrics["model/loss"])
     assert loss[-100:].mean() < loss[:100].mean() - 0.5

@@ -19,6 +19,8 @@ from hybrid_rl.run.saved import load
 from hybrid_rl.thesis.studies import held_out
 from hybrid_rl.types import Params, Spec
 
+pytestmark = pytest.mark.turns(3)
+
 
 def test_the_error_is_that_of_numpy_for_linear_models() -> None:
     """One model for each of two seeds; predicting the mean change gives 1."""
