@@ -236,7 +236,7 @@ def test_with_debug_nans_a_run_ends_in_the_call_that_made_them_and_not_before(
     tmp_path, monkeypatch
 ):
     """Metrics that do not apply are NaN, too; here no metric tells what was learned."""
-    monkeypatch.setattr(session.rows, "infinite", lambda *_: {})
+    monkeypatch.setattr(session.records, "infinite", lambda *_: {})
     break_learner(monkeypatch, 0, 200)
     break_learner(monkeypatch, 1, 200)
     with jax.debug_nans(True), pytest.raises(DivergenceError, match="seed 0, step 250: "):
