@@ -3,7 +3,7 @@
     gymnasium   alive: z > 0.7 m, |pitch| < 0.2 rad, all else in [-100, 100]
     pybullet    alive: z > 0.8 m and |pitch| < 1 rad
 
-o [11]; a: three torques, as fractions of 200 N m; rewards, start and decisions: `planar_legs`.
+o [11]; a: three torques, as fractions of 200 N m; rewards, start and decisions: `locomotion`.
 
 Source: Erez, Tassa, Todorov 2011; parameters of Gymnasium's Hopper-v5; pybullet_envs.
 """
@@ -14,7 +14,7 @@ from typing import ClassVar
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs.planar_legs import PlanarLegs
+from hybrid_rl.envs.locomotion import PlanarLegs
 
 
 @dataclass(frozen=True)

@@ -6,11 +6,22 @@ a: action in [-1, 1]; w: 0.1 x joint velocity; theta: joint angle scaled so that
 -1 and 1; alive: +1 or -1 by the robot's own rule; x: position of the root (in pybullet the mean
 over all parts).
 
-Source: pybullet_envs, WalkerBaseBulletEnv (the thesis' reward, Appendix B).
+`PlanarLegs`, hopper and walker, run in the x-z plane: qpos is x, z, pitch, joints, and
+
+    gymnasium   r = 1[alive] + dx/dt - 0.001 |a|^2
+    pybullet    r as above
+
+o = (qpos without x, qvel); observed velocities are clipped to [-velocity_limit, velocity_limit], by
+default 10 as in Gymnasium. a: torques, as fractions of full torque; start: qpos and qvel ~
+U(-0.005, 0.005) around the upright pose; a decision is 4 steps of 0.002 s. Terminates when not
+alive, a rule of each robot and reward.
+
+Source: pybullet_envs, WalkerBaseBulletEnv (the thesis' reward, Appendix B); Erez, Tassa, Todorov
+2011; parameters of Gymnasium.
 """
 
 from abc import abstractmethod
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 import jax
 import jax.numpy as jnp
@@ -19,7 +30,7 @@ from jax import Array
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.body import Body
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
-from hybrid_rl.fields import part
+from hybrid_rl.fields import Positive, part
 from hybrid_rl.types import EnvState, Spec
 
 
@@ -103,3 +114,47 @@ def pybullet_reward(
     at_limit = (jnp.abs((angle - middle) / half) > 0.99).sum()
     electricity = 2.0 * jnp.abs(action * 0.1 * velocity).mean() + 0.1 * (action**2).mean()
     return jnp.where(alive, 1.0, -1.0) + speed - electricity - 0.1 * at_limit
+
+
+@part
+class PlanarLegs(Runner):
+    """A robot by its `asset` and `alive`; `physics` is native, mjx, warp or auto."""
+
+    reward: Literal["gymnasium", "pybullet"] = "gymnasium"
+    velocity_limit: Positive | None = 10.0  # of observed velocities [m/s, rad/s]
+    asset: ClassVar[str]
+    steps, dt, hidden, spread = 4, 0.008, 1, 0.005
+
+    @abstractmethod
+    def alive(self, qpos: Array, qvel: Array) -> Array:
+        """Whether [] an episode goes on at qpos without x [nq - 1] and qvel [nv]."""
+
+    @property
+    def _asset(self) -> str:
+        return self.asset
+
+    def _start(self, key: Array, size: int) -> Array:
+        return jax.random.uniform(key, (size,), jnp.float32, -self.spread, self.spread)
+
+    def _obs(self, data: PhysicsState) -> Array:
+        seen, limit = data.qvel, self.velocity_limit
+        if limit is not None:
+            seen = jnp.clip(seen, -limit, limit)
+        return jnp.concatenate((data.qpos[1:], seen))
+
+    def _paid(self, data: PhysicsState, control: Array, speed: Array) -> tuple[Array, Array]:
+        alive = self.alive(data.qpos[1:], data.qvel)
+        if self.reward == "gymnasium":
+            return alive + speed - 0.001 * (control**2).sum(), ~alive
+        limits = jnp.asarray(self._body.model.jnt_range[3:], jnp.float32)
+        reward = pybullet_reward(alive, speed, control, data.qpos[3:], data.qvel[3:], limits)
+        return reward, ~alive
+
+    def ended(self, obs: Array) -> Array:
+        """Whether [] an episode terminates at obs [o]."""
+        joints = self._body.model.nq - 1
+        return ~self.alive(obs[:joints], obs[joints:])
+
+    def quantities(self, obs: Array) -> dict[str, Array]:
+        """Height of the torso [m], pitch [rad] and speed [m/s] at obs [o]."""
+        return {"height": obs[0], "pitch": obs[1], "speed": obs[self._body.model.nq - 1]}

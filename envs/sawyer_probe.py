@@ -23,9 +23,9 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs.analytic.contact_plane import ContactPlane, metrics_of
+from hybrid_rl.envs.analytic.contact_plane import ContactPlane, drawn, metrics_of, solid
 from hybrid_rl.envs.analytic.point_mass import DT, move
-from hybrid_rl.envs.mujoco import mjcf, rounded_boxes
+from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.kinematics import (
     Chain,
     damped_inverse,
@@ -85,10 +85,10 @@ class SawyerProbe:
         cx, cy = ((a + b) / 2 for a, b in zip(self.low, self.high, strict=True))
         x, y, angle = self.theta or (cx, cy, 0.0)
         centred = tuple((a - cx, b - cy, *shape) for a, b, *shape in self.objects)
-        geoms, pairs = rounded_boxes.solid(centred, "rod", HALF)
+        geoms, pairs = solid(centred, "rod", HALF)
         body, site = 'name="objects" pos="0 0', '<site name="everywhere"'
         text = mjcf.text(ASSET).replace(body, f'name="objects" euler="0 0 {angle}" pos="{x} {y}')
-        text = text.replace(site, f"{geoms}{rounded_boxes.drawn(centred, HALF)}{site}")
+        text = text.replace(site, f"{geoms}{drawn(centred, HALF)}{site}")
         return text.replace("</mujoco>", f"{pairs}</mujoco>")
 
     @property

@@ -6,16 +6,28 @@ p, p_ref [m]: the tip and its reference, after the step; a: torques as fractions
 9, 9, 9 N m. o = (q, q', q_ref now, q'_ref now, q_ref next, q'_ref next) [42]; next: one decision
 later. A decision is 0.01 s, 5 physics steps. The arm compensates its gravity. For `learn`
 decisions the reference is the neutral pose, near which the arm starts at rest; then a second leads
-to the path (`sawyer_reference`). Never terminates.
+to the path. Never terminates.
 
 `damping`: none, or the maker's in its simulator, 10, 5, 5, 1, 2, 1, 1 N m s/rad. `payload`: mass
 added to the rod, which the gravity compensation leaves out; with it the arm sinks. Metrics:
 tip_error = |p - p_ref| [m], joint_rate = max |q'| [rad/s].
 
+The path and the angles with which the tip follows it:
+
+    p(t) = (0.8, 0.1 cos 2t, 0.1 sin 4t + 0.4) [m], of period pi s
+    q(t) = argmin |q - n|^2 subject to p(q) = p(t),   n: neutral pose
+    q <- n + J^+ (p(t) - p(q) + J (q - n)),   J = dp/dq [3, 7]
+
+The iteration is least squares with the joints drawn to the neutral pose. q(t) is a Fourier series
+through its solutions, which gives its rates and accelerations. A quintic polynomial of 1 s leads
+from rest at the neutral pose to q(0) with its rates and accelerations.
+
 Source: thesis section 7.5.2 and appendix D (rate, path, state); limits of torque and damping:
-Rethink Robotics' sawyer_robot. The reward, the start and the payload are our choice.
+Rethink Robotics' sawyer_robot. Neutral pose: its sawyer_robot. The
+reward, the start, the polynomial and the payload are our choice.
 """
 
+from functools import cache
 from typing import Literal
 
 import jax
@@ -23,15 +35,20 @@ import jax.numpy as jnp
 import mujoco
 import numpy as np
 from jax import Array
+from scipy.interpolate import BPoly
 
-from hybrid_rl.envs import sawyer_reference, sensor_noise
+from hybrid_rl.envs import sensor_noise
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.kinematics import Chain
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, Simulator
-from hybrid_rl.envs.sawyer_reference import ASSET, NEUTRAL, SITE
 from hybrid_rl.fields import Count, Natural, NotNegative, part
 from hybrid_rl.types import EnvState, Spec
 
+ASSET, SITE = "sawyer_torque.xml", "tip"
+NEUTRAL = (0.0, -1.18, 0.0, 2.18, 0.0, 0.57, 3.3161)  # [rad]
+PERIOD = np.pi  # [s]
+BLEND = 1.0  # [s] from the neutral pose to the path
+SOLUTIONS = 128  # in a period; coefficients of the series are below 1e-12 rad from the 20th on
 SCENE = "sawyer_torque_scene.xml"
 STEPS = 5  # physics steps per decision
 DT = 0.01  # [s] of a decision
@@ -86,7 +103,7 @@ class SawyerTorque:
     def scene(self) -> str:
         """MJCF text of the scene for rendering, with points along the path."""
         spec = mujoco.MjSpec.from_file(str(mjcf.path(SCENE)))
-        marks = sawyer_reference.path(sawyer_reference.PERIOD / 60 * np.arange(60))
+        marks = path(PERIOD / 60 * np.arange(60))
         for mark in marks:
             spec.worldbody.add_site(pos=mark, size=[0.004, 0, 0], rgba=[0.95, 0.6, 0.15, 1])
         spec.compile()
@@ -106,7 +123,7 @@ class SawyerTorque:
 
     def _row(self, count: Array) -> Array:
         """(q_ref, q'_ref, p_ref) [17] after `count` [] decisions."""
-        rows = jnp.asarray(sawyer_reference.table(self.rounds, DT), jnp.float32)
+        rows = jnp.asarray(table(self.rounds, DT), jnp.float32)
         return rows[jnp.clip(count - self.learn, 0, len(rows) - 1)]
 
     def _state(self, data: PhysicsState, count: Array) -> EnvState:
@@ -124,3 +141,62 @@ def asset(damping: str, payload: float = 0.0) -> str:
         mass = ROD + payload
         values |= {"geom.rod.mass": mass, "body.rod.gravcomp": ROD / mass}
     return mjcf.changed(ASSET, values)
+
+
+def path(t: np.ndarray) -> np.ndarray:
+    """p [N, 3] [m] at times t [N] [s]."""
+    return np.stack([np.full_like(t, 0.8), 0.1 * np.cos(2 * t), 0.1 * np.sin(4 * t) + 0.4], 1)
+
+
+def tip(data: mujoco.MjData, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Position [3] of the tip and its Jacobian [3, 7] at q [7], in float64."""
+    model, jacobian = mjcf.load(ASSET), np.zeros((3, 7))
+    data.qpos[:] = q
+    mujoco.mj_fwdPosition(model, data)
+    site = model.site(SITE).id
+    mujoco.mj_jacSite(model, data, jacobian, None, site)
+    return data.site_xpos[site].copy(), jacobian
+
+
+@cache
+def _coefficients() -> np.ndarray:
+    """Fourier coefficients [SOLUTIONS / 2 + 1, 7] of q(t)."""
+    data, neutral = mujoco.MjData(mjcf.load(ASSET)), np.array(NEUTRAL)
+    q, solutions = neutral, []
+    for point in path(np.arange(SOLUTIONS) * PERIOD / SOLUTIONS):
+        change = np.inf
+        while change > 1e-12:
+            p, jacobian = tip(data, q)
+            after = neutral + np.linalg.pinv(jacobian) @ (point - p + jacobian @ (q - neutral))
+            change, q = np.abs(after - q).max(), after
+        solutions.append(q)
+    return np.fft.rfft(solutions, axis=0, norm="forward")
+
+
+def joints(t: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """q, q', q'' [N, 7] of the path at times t [N] [s]."""
+    c = _coefficients()
+    w = 2 * np.pi / PERIOD * np.arange(len(c))
+    twice = np.where(w > 0, 2.0, 1.0)  # negative frequencies
+    waves = twice * np.exp(1j * np.outer(t, w))
+    q, rate, acceleration = ((waves * (1j * w) ** k @ c).real for k in range(3))
+    return q, rate, acceleration
+
+
+@cache
+def table(rounds: int, dt: float) -> np.ndarray:
+    """(q, q', tip) [N, 17], one row every `dt` [s]: the blend, `rounds` of the path, then rest.
+
+    The first row is the neutral pose at rest. The last one repeats the end of the path at rest.
+    """
+    blend = round(BLEND / dt)
+    t = dt * np.arange(round(rounds * PERIOD / dt) + 1)
+    q, rate, _ = joints(t)
+    still = np.zeros(7)
+    end = [part[0] for part in joints(t[:1])]
+    quintic = BPoly.from_derivatives([0, BLEND], [[np.array(NEUTRAL), still, still], end])
+    before = dt * np.arange(blend)
+    q = np.concatenate([quintic(before), q, q[-1:]])
+    rate = np.concatenate([quintic.derivative()(before), rate, still[None]])
+    data = mujoco.MjData(mjcf.load(ASSET))
+    return np.concatenate([q, rate, [tip(data, each)[0] for each in q]], 1)

@@ -30,9 +30,9 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core.poses import from_map, rotated, to_map
-from hybrid_rl.envs.analytic.contact_plane import ContactPlane, metrics_of
+from hybrid_rl.envs.analytic.contact_plane import ContactPlane, metrics_of, solid
 from hybrid_rl.envs.analytic.point_mass import DT, move
-from hybrid_rl.envs.mujoco import mjcf, rounded_boxes
+from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, Simulator
 from hybrid_rl.fields import NotNegative, Positive, part
 from hybrid_rl.types import EnvState
@@ -75,7 +75,7 @@ class Sprk(ContactPlane):
         text = mjcf.text(ROLLING if self.rolling else SLIDING)
         for word, value in words.items():
             text = text.replace(word, str(value))
-        geoms, pairs = rounded_boxes.solid(self.objects, "ball", HALF)
+        geoms, pairs = solid(self.objects, "ball", HALF)
         text = text.replace("</body>", f"{geoms}</body>", 1)
         return text[text.index("<mujoco") :].replace("</mujoco>", f"{pairs}</mujoco>")
 

@@ -3,7 +3,7 @@
     gymnasium   alive: 0.8 m < z < 2 m and |pitch| < 1 rad
     pybullet    alive: z > 0.8 m and |pitch| < 1 rad
 
-o [17]; a: six torques, as fractions of 100 N m; rewards, start and decisions: `planar_legs`.
+o [17]; a: six torques, as fractions of 100 N m; rewards, start and decisions: `locomotion`.
 
 Source: Erez, Tassa, Todorov 2011; parameters of Gymnasium's Walker2d-v5; pybullet_envs.
 """
@@ -14,7 +14,7 @@ from typing import ClassVar
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs.planar_legs import PlanarLegs
+from hybrid_rl.envs.locomotion import PlanarLegs
 
 
 @dataclass(frozen=True)

@@ -1,18 +1,26 @@
 """What Python calls: `make` an environment, `train` a run, `load` what was trained."""
 
+import re
 import signal
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict, Unpack
 
-from omegaconf import DictConfig
+from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl.cli import interrupt
+from hybrid_rl.envs.adapters.external import check_world
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run import assembled, launch, members
-from hybrid_rl.run.job import Output
+from hybrid_rl.files.reading import yaml_file
+from hybrid_rl.run import launch, members
+from hybrid_rl.run.checkpoints import checkpoint
+from hybrid_rl.run.launch import Output
+from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.settings import build as config
 from hybrid_rl.settings.build import Run
+from hybrid_rl.settings.groups import CONF
+from hybrid_rl.settings.values import SECTIONS, whole
 from hybrid_rl.settings.words import typed_values
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
@@ -21,6 +29,7 @@ if TYPE_CHECKING:
     from hybrid_rl.analysis.curves import Curve
     from hybrid_rl.run.saved import Trained
 
+DEFAULTS = ("compile_cache", "precision")  # those of conf/train.yaml
 OnRow = Callable[[dict[str, Any]], Any]
 
 
@@ -98,7 +107,7 @@ class Result(dict[str, Any]):
 
 
 class OfAgent(TypedDict, total=False):
-    """Settings of a run of an agent; run.assembled says what a key that is left out means."""
+    """Settings of a run of an agent; `run_of` says what a key that is left out means."""
 
     total_steps: int
     seed: int
@@ -134,7 +143,7 @@ def train(
         on_row: called with each new row of metrics.jsonl, a dictionary. Once it returns False, or
             raises, the run ends with a checkpoint, and "finished" of the result is False.
         progress: False prints nothing.
-        settings: of an agent alone (hybrid_rl.run.assembled.run_of): total_steps, seed, num_seeds,
+        settings: of an agent alone (run_of): total_steps, seed, num_seeds,
             run_dir, name, log_every, eval_every, eval_episodes, checkpoint_every.
 
     Raises:
@@ -146,7 +155,7 @@ def train(
     output = Output(on_row, progress)
     if isinstance(method, Agent):
         values: dict[str, Any] = {**settings}
-        run = assembled.run_of(method, **values)
+        run = run_of(method, **values)
         result = Result(launch.train_built(run, interrupt.as_call, output), run)
     else:
         if settings:
@@ -159,3 +168,90 @@ def train(
         signal.raise_signal(result["signal"])
     output.raise_problem()
     return result
+
+
+def run_of(
+    agent: Agent,
+    *,
+    total_steps: int,
+    seed: int = 0,
+    num_seeds: int = 1,
+    run_dir: str | Path | None = None,
+    name: str | None = None,
+    log_every: int | None = None,
+    eval_every: int | None = None,
+    eval_episodes: int = 10,
+    checkpoint_every: int | None = None,
+) -> Run:
+    """The run of `agent` with these values of the configuration; None is explained below.
+
+    Its folder has the usual form, but config.yaml holds the agent as text, of which no command can
+    build it again: `evaluate`, `render` and `resume=` refuse it, and figures draw it.
+
+    run_dir: None is runs/ENV/NAME/TIME; a folder that holds checkpoints is continued. name: of the
+    method, in figures; None is the classes of the learners. log_every: None is the default.
+    eval_every: None evaluates nothing. checkpoint_every: None saves at the end alone.
+    """
+    defaults: Any = OmegaConf.load(CONF / "train.yaml")
+    counts = {"total_steps": total_steps, "num_seeds": num_seeds, "eval_episodes": eval_episodes}
+    counts["log_every"] = defaults.log_every if log_every is None else log_every
+    every = {"eval_every": eval_every, "checkpoint_every": checkpoint_every}
+    counts |= {key: total_steps if value is None else value for key, value in every.items()}
+    counts = {key: whole(key, value) for key, value in counts.items()}
+    counts["seed"] = whole("seed", seed, 0)
+    config = OmegaConf.create(
+        _described(agent, name)
+        | counts
+        | {key: defaults[key] for key in DEFAULTS}
+        | {"eval_modes": [] if eval_every is None else ["full"]}
+        | {"run_dir": None if run_dir is None else str(run_dir), "resume": None, "logger": None}
+    )
+    prepare(config)  # first: a check of the user's world initialises JAX's devices
+    check_world(agent.episode.env)
+    rounds = -(-counts["total_steps"] // agent.num_envs)
+    agent.check(rounds * agent.num_envs)
+    sized = replace(agent, replay=agent.replay.within(rounds, agent.num_envs))
+    run = Run(config, sized, {"full": agent.controller.greedy()})
+    if run_dir is not None and checkpoint.steps(Path(run_dir) / "checkpoints"):
+        run = replace(run, notes=_check_same(run, Path(run_dir)))
+        config.resume = str(run_dir)
+    return run
+
+
+def _described(agent: Agent, name: str | None) -> dict[str, Any]:
+    """The keys of a configuration that follow from an agent."""
+    env = agent.episode.env
+    classes = [type(part).__name__ for part in agent.learners.values() or [agent.controller]]
+    physics = getattr(env, "physics", None)
+    physics = physics if isinstance(physics, str) else None
+    return {
+        "task": type(env).__name__.lower(),
+        "algo": name or "_".join(classes).lower(),
+        "agent": repr(agent),
+        "num_envs": agent.num_envs,
+        "random_steps": agent.random_steps,
+        "checkpoint_replay": True,
+        "physics": physics,
+        **{section: {} for section in SECTIONS},
+        "replay": {"capacity": agent.replay.capacity},  # before the run bounds it
+        "env": {"physics": physics},
+        "controllers": {"full": None},
+    }
+
+
+def _check_same(run: Run, folder: Path) -> tuple[str, ...]:
+    """A note if the agent is not the one that config.yaml describes."""
+    path, flaw = folder / "config.yaml", ""
+    config = yaml_file(path) if path.exists() else {}
+    made = max(checkpoint.steps(folder / "checkpoints"))
+    saved = tuple(checkpoint.meta(folder / "checkpoints").get("seeds", ()))
+    if "agent" not in config:
+        flaw = f'holds the run of a configuration; continue it by train(["resume={folder}"])'
+    elif run.config.total_steps < made:
+        flaw = f"has {made} steps; total_steps={run.config.total_steps} can be raised, not lowered"
+    elif saved != run.seeds:
+        flaw = f"holds the learners of seed {', '.join(map(str, saved))}; give these"
+    if flaw:
+        raise UsageError(f"run_dir={folder}: {flaw}")
+    then, now = (re.sub(" at 0x[0-9a-f]+", "", each["agent"]) for each in (config, run.config))
+    return ("goes on with another agent than before",) if then != now else ()

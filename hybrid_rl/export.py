@@ -41,7 +41,6 @@ def main() -> None:
     """The command."""
     given, _ = read(__doc__, ARGUMENTS)
     out = output("out", given["out"], SUFFIXES)
-    from hybrid_rl.data.layers import save_onnx
     from hybrid_rl.files.atomic import replacing
     from hybrid_rl.run import exported  # imports JAX, for seconds
     from hybrid_rl.run.saved import load_named
@@ -55,7 +54,7 @@ def main() -> None:
     if out.suffix == ".onnx":
         net = exported.layers(spec, controller, params)._replace(span=trained.span)
         try:
-            save_onnx(out, trained.task, spec, net)
+            exported.save_onnx(out, trained.task, spec, net)
         except ImportError as error:
             raise UsageError(f"out={out}: needs onnx; {install('onnx')}") from error
         print(f'{out}: onnxruntime.InferenceSession("{out.name}").run(None, {{"obs": obs[None]}})')

@@ -42,7 +42,7 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.run.logs.progress import say
 
 if TYPE_CHECKING:
-    from hybrid_rl.analysis.film import Film
+    from hybrid_rl.analysis.drawing import Film
     from hybrid_rl.training.episode import Episode
 
 SIZE = (640, 480)  # [pixels]
@@ -61,7 +61,7 @@ def main() -> None:
     """The command."""
     given, changes = read(__doc__, ARGUMENTS, ROBOT_CHANGES)
     named = robot(given, changes)
-    from hybrid_rl.analysis import film  # imports JAX, for seconds
+    from hybrid_rl.analysis import drawing  # imports JAX, for seconds
     from hybrid_rl.envs.adapters.external import External
     from hybrid_rl.envs.mujoco import offscreen
     from hybrid_rl.run.recording import scripted_expert
@@ -82,12 +82,12 @@ def main() -> None:
         seed, by = trained.seeds[0] if seed is None else seed, f"step {trained.step:,}"
     key = evaluation_keys(seed, number + 1)[-1]
     if isinstance(world.env, External):
-        pictures, total = film.draw_outside(world, controller, params, key, steps, out)
+        pictures, total = drawing.draw_outside(world, controller, params, key, steps, out)
         print(f"{out}: {pictures} pictures, return {total:,.1f}, {by}")
         return
     say("compiling an episode ...")  # of a planner, a minute
-    begun = replace(world, steps=film.length(world, steps, out))
-    _draw(world, film.film(begun, controller, params, key), given, out, by)
+    begun = replace(world, steps=drawing.length(world, steps, out))
+    _draw(world, drawing.film(begun, controller, params, key), given, out, by)
 
 
 def _out(given: dict[str, Any], named: str) -> Path:
@@ -105,20 +105,21 @@ def _out(given: dict[str, Any], named: str) -> Path:
 
 def _draw(world: "Episode", shown: "Film", given: dict[str, Any], out: Path, by: str) -> None:
     """Write an episode of `world`, and print its length and return; by: whose actions."""
-    from hybrid_rl.analysis import film
+    from hybrid_rl.analysis import drawing
+    from hybrid_rl.envs.mujoco.scenery import scene_of
 
     decisions, size = len(shown.poses) - 1, (given["width"], given["height"])
     if given["at"]:
         poses = shown.poses[np.minimum(given["at"], decisions)]
-        film.draw_beside(world, poses, out, *size)
+        drawing.draw_beside(scene_of(world.env), poses, out, *size)
         if late := [str(at) for at in given["at"] if at > decisions]:
             line = f"the episode ends after {decisions} decisions, shown instead"
             print(f"at={','.join(late)}: {line}")
     else:
-        film.draw_film(world, shown, out, *size)
+        drawing.draw_film(world, shown, out, *size)
     ended = {True: ", success", False: ", no success", None: ""}[shown.success]
     print(f"{out}: {decisions} decisions, return {shown.total:,.1f}{ended}, {by}")
-    if not given["episode_steps"] and decisions == film.length(world, 0, out) < world.steps:
+    if not given["episode_steps"] and decisions == drawing.length(world, 0, out) < world.steps:
         print(f"the beginning, as there is no graphics card; all: episode_steps={world.steps}")
 
 

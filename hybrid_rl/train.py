@@ -31,8 +31,8 @@ from omegaconf import DictConfig
 from hybrid_rl.api import OnRow, train
 from hybrid_rl.cli import command, hydra_line, interrupt
 from hybrid_rl.errors import DivergenceError
-from hybrid_rl.run import divergence, folder, launch, members
-from hybrid_rl.run.job import Output
+from hybrid_rl.run import folder, launch, members, session
+from hybrid_rl.run.launch import Output
 from hybrid_rl.run.logs.progress import say
 from hybrid_rl.run.logs.records import result_line
 from hybrid_rl.settings.words import typed_values
@@ -58,7 +58,7 @@ def _job(config: DictConfig, typed: Sequence[str], on_row: OnRow | None = None) 
         sys.exit(128 + summary["signal"])
     if summary.get("diverged"):
         left = len(summary["seeds"]) - len(summary["diverged"])
-        raise DivergenceError(divergence.line(summary["diverged"], left, None))
+        raise DivergenceError(session.failure_line(summary["diverged"], left, None))
     return summary
 
 

@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from hybrid_rl.analysis.drawing import frames
-from hybrid_rl.analysis.film import episode
+from hybrid_rl.analysis.drawing import episode, frames
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, output, read, whole
 from hybrid_rl.envs.mujoco.scenery import scene_of

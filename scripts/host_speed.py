@@ -23,9 +23,9 @@ import numpy as np
 from gymnasium.envs.mujoco.half_cheetah_v5 import HalfCheetahEnv
 
 from hybrid_rl.cli.arguments import Argument, one_of, read
-from hybrid_rl.outside.loops import loop_of
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.run.machine.provenance import device
+from hybrid_rl.run.members import loop_of
 from hybrid_rl.settings import build as configuration
 
 IDS = {"halfcheetah": "HalfCheetah-v5", "hopper": "Hopper-v5", "pendulum": "Pendulum-v1"}

@@ -9,7 +9,7 @@ import numpy as np
 from omegaconf import DictConfig
 from tiny import SMALL, demonstrate
 
-from hybrid_rl.outside.loops import loop_of
+from hybrid_rl.run.members import loop_of
 from hybrid_rl.settings import build as config
 
 LINEAR = ("koopman", "gp_")  # begin the names of methods without networks to shrink

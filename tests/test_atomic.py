@@ -39,16 +39,15 @@ OPENED = {  # in what writes to run folders; the folder of a run itself is the u
     },
     "files/reading.py": {"os.open(file, os.O_RDONLY | NO_WAIT)", "os.fdopen(handle, 'rb')"},
     "files/lock.py": {"folder.mkdir(parents=True, exist_ok=True)"},
-    "run/checkpoints/manifest.py": {
-        "manifest.write_text(json.dumps({'files': listed}, indent=1) + '\\n', encoding='ascii')",
-        "path.open('rb')",
-    },
     "run/folder.py": {"folder.mkdir(parents=True)"},
+    "run/exported.py": {"draft.write_bytes(model.SerializeToString())"},  # of `replacing`
     "run/machine/jax_settings.py": {"cache.mkdir(parents=True, exist_ok=True)"},
     "run/logs/progress.py": {"os.open(os.devnull, os.O_WRONLY)"},
     "run/checkpoints/checkpoint.py": {
         "draft.mkdir()",  # a name that is free
         "(draft / name).write_text(text + '\\n', encoding='utf-8')",
+        "manifest.write_text(json.dumps({'files': listed}, indent=1) + '\\n', encoding='ascii')",
+        "path.open('rb')",
     },
     "cli/sweep.py": {"folder.mkdir(parents=True, exist_ok=True)"},
 }

@@ -17,8 +17,7 @@ from tiny import SMALL
 from hybrid_rl.controllers.gradient import GradientController
 from hybrid_rl.files import targets as parts
 from hybrid_rl.settings import build as config
-from hybrid_rl.settings.groups import file, options
-from hybrid_rl.settings.registry import choices
+from hybrid_rl.settings.groups import choices, file, options
 
 PARTS = {  # every class that a choice of a group, or a file of conf/, names
     *(kind for names in choices(config.CONF).values() for kind in names.values()),
@@ -53,7 +52,7 @@ EACH = [  # every method on one task, the default on the default task, one on ev
 ]
 RUN = {  # methods that run here, one of a kind; test_learning.py runs four, thesis/tests more
     *("hybrid_deterministic", "hybrid_bc", "fisher", "kle3", "kle3_ddpg", "dagger"),
-    *("koopman_active", "localisation"),
+    "koopman_active",
 }
 
 

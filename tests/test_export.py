@@ -17,7 +17,6 @@ from hybrid_rl import export
 from hybrid_rl.cli import command
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.controllers.sampling import SamplingController
-from hybrid_rl.data import layers
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.models.gaussian import Gaussian
 from hybrid_rl.models.world import World
@@ -142,7 +141,7 @@ def test_onnx_acts_as_every_policy(learned, tmp_path, name):
     net = policy.perceptron(params, SPEC)
     if name == "linear":  # in a world whose actions are from 2.5 to 3.5
         net, want = net._replace(span=np.float32([[3], [0.5]])), 3 + want / 2
-    layers.save_onnx(tmp_path / "policy.onnx", "pendulum", SPEC, net)
+    exported.save_onnx(tmp_path / "policy.onnx", "pendulum", SPEC, net)
     (got,) = onnxruntime.InferenceSession(tmp_path / "policy.onnx").run(None, {"obs": obs})
     np.testing.assert_allclose(got, want, atol=1e-5)
     assert np.ptp(want) > 0.1

@@ -15,7 +15,7 @@ from omegaconf import OmegaConf
 from tiny import TINY, call, call_train, refusal, summary_of
 
 from hybrid_rl import evaluate, render
-from hybrid_rl.analysis import film
+from hybrid_rl.analysis import drawing
 from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.errors import SourceOf, UsageError
@@ -150,11 +150,11 @@ def test_a_mujoco_environment_is_two_files_and_one_yaml(conf, tmp_path, capfd, c
     assert capfd.readouterr().err == ""
     trained = load(tmp_path / "run")
     assert (evaluate.evaluate(trained, episodes=1)["return"] < 0).all()
-    shown = film.episode(trained, steps=3)
+    shown = drawing.episode(trained, steps=3)
     assert shown.poses.shape == (4, 2)
     if can_draw:
         picture = tmp_path / "crane.gif"
-        film.draw_film(trained.episode, shown, picture, 64, 48)
+        drawing.draw_film(trained.episode, shown, picture, 64, 48)
         assert picture.stat().st_size > 0
 
 

@@ -67,6 +67,7 @@ IDS = [
     *("antigravity:Pendulum-v1", "subprocess:lab/A-v0", "pip:A-v0", "theirs.zz_evil:lab/A-v0"),
     *("scripts.bootstrap:A-v0", "hybrid_rl.robot:A-v0", "zz_mine.sub:A-v0", "__main__:A-v0"),
 ]
+NAMED = [*(("make", name) for name in NAMES), *(("id", name) for name in IDS)]
 TREES = [  # where a name stands
     {"env": EXTERNAL | {"id": "Pendulum-v1", "kwargs": {"a": [1, {"b": ["os:system"]}]}}},
     {"env": EXTERNAL | {"id": "Pendulum-v1", "kwargs": {"env_id": "os:A-v0"}}},
@@ -179,16 +180,10 @@ def test_it_is_refused_wherever_it_stands(folder, keys, at):
     assert refused(folder).startswith(f"{folder}/config.yaml: {at}=os.system: is no part of")
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_a_name_of_others_makes_no_environment(folder, name):
-    line = judged(folder, env=EXTERNAL | {"make": name, "kwargs": WANTED})
-    assert line.startswith(f"{folder}/config.yaml: env.make={name}: ")
-
-
-@pytest.mark.parametrize("name", IDS)
-def test_an_id_of_others_imports_nothing(folder, name):
-    line = judged(folder, env=EXTERNAL | {"id": name})
-    assert line.startswith(f"{folder}/config.yaml: env.id={name}: ")
+@pytest.mark.parametrize(("key", "name"), NAMED)
+def test_a_name_of_others_makes_no_environment_and_imports_nothing(folder, key, name):
+    line = judged(folder, env=EXTERNAL | {key: name, "kwargs": WANTED})
+    assert line.startswith(f"{folder}/config.yaml: env.{key}={name}: ")
 
 
 @pytest.mark.parametrize("keys", TREES, ids=range(len(TREES)))

@@ -1,10 +1,15 @@
-"""Numbers on the pages are those of the JSON of docs/results, as `make pages` writes them."""
+"""The pages: numbers are those of docs/results, links lead somewhere, the paper is as JOSS asks.
+
+`make pages` writes the numbers.
+"""
 
 import json
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 
 from scripts.pages import __main__ as command
 from scripts.pages import marks, values
@@ -121,3 +126,83 @@ def test_no_command_of_a_page_replaces_our_numbers():
     writes = re.compile(r"^.*(?:\bout=|--out[ =]|> *)docs/.*$", re.MULTILINE)
     found = {path.name: writes.findall(text) for path, text in pages.items()}
     assert not {name: lines for name, lines in found.items() if lines}
+
+
+ROOT = Path(__file__).resolve().parents[1]
+AT_TOP = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")
+PAGES = [*(ROOT / name for name in AT_TOP), *sorted((ROOT / "docs").rglob("*.md"))]
+CITING = [*PAGES, ROOT / "CITATION.cff", *sorted((ROOT / "paper").glob("paper.*"))]
+CITING += sorted((ROOT / "docs" / "notebooks").glob("*.ipynb"))
+EXTERNAL = re.compile(r"\bhttps?:[^\s)}>\"'`\\]*")
+LINK = re.compile(r"\]\((?!https?:)([^)#\s]*)(?:#([^)\s]+))?\)")
+
+
+def anchors(page):
+    """GitHub's anchors of the headings of a page."""
+    text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+    headings = re.findall(r"^#+ (.+)$", text, re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_links_exist(page):
+    links = LINK.findall(page.read_text(encoding="utf-8"))
+    targets = [(page.parent / path if path else page, anchor) for path, anchor in links]
+    missing = [str(path) for path, _ in targets if not path.exists()]
+    missing += [f"{path}#{a}" for path, a in targets if a and a not in anchors(path)]
+    assert not missing
+
+
+def test_every_picture_is_on_a_page():
+    texts = "".join(page.read_text(encoding="utf-8") for page in PAGES)
+    pictures = [p.name for end in ("png", "gif") for p in (ROOT / "docs").rglob(f"*.{end}")]
+    assert not [name for name in pictures if f"/{name})" not in texts and f"({name})" not in texts]
+
+
+def malformed(text):
+    """External links of a text that are not https://HOST.DOMAIN, or end with punctuation."""
+    links = EXTERNAL.findall(text)
+    form = re.compile(r"https://[\w-]+(\.[\w-]+)+(/\S*)?")
+    return [link for link in links if not form.fullmatch(link) or link[-1] in ".,;:"]
+
+
+def test_external_links_have_the_right_form():
+    """`make docs ARGS=links` requests them."""
+    texts = [path.read_text(encoding="utf-8") for path in CITING]
+    assert any(EXTERNAL.search(text) for text in texts)
+    assert not [link for text in texts for link in malformed(text)]
+
+
+FOLDER = ROOT / "paper"
+_, MATTER, TEXT = (FOLDER / "paper.md").read_text(encoding="utf-8").split("---\n", 2)
+PROSE = re.sub(r"<!--.*?-->", "", TEXT, flags=re.DOTALL)
+SECTIONS = ["Summary", "Statement of need", "State of the field", "Software design"]
+SECTIONS += ["Research impact statement", "AI usage disclosure", "Acknowledgements", "References"]
+WORDS = (750, 1750)  # https://joss.readthedocs.io/en/latest/paper.html, as of 2026
+NAMES = r"TD-MPC2|DreamerV3|Stable-Baselines3|KL-E3|MuJoCo Playground|95% bootstrap"
+
+
+def test_its_sections_and_length_are_those_that_the_journal_asks_for():
+    assert re.findall(r"^# (.+)$", TEXT, re.MULTILINE) == SECTIONS
+    assert WORDS[0] <= len(PROSE.split()) <= WORDS[1]
+    matter = yaml.safe_load(MATTER)
+    assert {"title", "tags", "authors", "affiliations", "date", "bibliography"} <= matter.keys()
+
+
+def test_each_reference_is_cited_and_each_citation_is_there():
+    entries = re.findall(r"^@\w+\{(\w+),", (FOLDER / "paper.bib").read_text(encoding="utf-8"), re.M)
+    assert len(entries) == len(set(entries))
+    assert set(entries) == set(re.findall(r"@(\w+)", PROSE))
+
+
+def test_every_number_is_written_from_the_results():
+    """`make pages` writes those between marks, and tests/test_pages.py compares."""
+    marked = re.sub(r"<!-- = .*?<!-- / -->", "", TEXT, flags=re.DOTALL)
+    names = re.sub(rf"{NAMES}|`[^`]*`|\[[@;\w ]+\]|\]\([^)]*\)", "", marked)
+    assert re.findall(r"\d+", names) == []
+
+
+def test_its_pictures_are_there():
+    pictures = re.findall(r"!\[[^]]*\]\(([^)]+)\)", TEXT)
+    assert pictures
+    assert all((FOLDER / name).is_file() for name in pictures)

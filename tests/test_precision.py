@@ -18,7 +18,7 @@ from hybrid_rl.networks import MLP, normalised, precision
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
 from hybrid_rl.run.exported import program
 from hybrid_rl.settings.build import build
-from hybrid_rl.training.axis import Axis
+from hybrid_rl.training.loop import Axis
 from hybrid_rl.types import Params, Spec
 
 pytestmark = pytest.mark.turns(3)

@@ -13,7 +13,7 @@ import pytest
 
 import hybrid_rl as hr
 from hybrid_rl.envs.adapters import stand_in
-from hybrid_rl.settings.registry import choices
+from hybrid_rl.settings.groups import choices
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/*.md"))]

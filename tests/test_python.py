@@ -19,9 +19,8 @@ from tiny import TINY, contents, summary_of
 
 import hybrid_rl as hr
 from hybrid_rl.analysis.curves import Curve
-from hybrid_rl.api import Result
-from hybrid_rl.run.assembled import run_of
-from hybrid_rl.run.job import Output
+from hybrid_rl.api import Result, run_of
+from hybrid_rl.run.launch import Output
 from hybrid_rl.run.session import Session
 
 pytestmark = pytest.mark.turns(3)

@@ -12,7 +12,7 @@ from scenes import FIXED
 from tiny import call
 
 from hybrid_rl import render
-from hybrid_rl.analysis import drawing, film
+from hybrid_rl.analysis import drawing
 from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.run.saved import Trained
@@ -75,12 +75,12 @@ draw = partial(call, lambda: command.run(render.main))
 
 
 def test_an_episode_ends_where_the_world_ends(trained):
-    poses, total, success = film.episode(trained)
+    poses, total, success = drawing.episode(trained)
     np.testing.assert_allclose(poses[:, 0], 0.1 * np.arange(6), atol=1e-6)
     assert (total, success) == (5, None)
-    poses, total, _ = film.episode(trained, seed=4)
+    poses, total, _ = drawing.episode(trained, seed=4)
     assert (poses.shape, total) == ((21, 1), 0)
-    poses, total, _ = film.episode(trained, steps=3)
+    poses, total, _ = drawing.episode(trained, steps=3)
     assert (len(poses), total) == (4, 3)
 
 
@@ -120,7 +120,7 @@ class Goal(Slider):
 
 def test_success_is_that_of_the_end(trained):
     trained.episode = Episode(Goal(), steps=20)
-    assert [film.episode(trained, seed=seed).success for seed in (3, 4)] == [True, False]
+    assert [drawing.episode(trained, seed=seed).success for seed in (3, 4)] == [True, False]
 
 
 def test_pictures_side_by_side(trained, tmp_path, capsys, draws):
@@ -167,7 +167,7 @@ def test_a_processor_draws_the_beginning_unless_asked_for_more(
 ):
     """The box falls off after 5 decisions; three pictures after the first are the default."""
     monkeypatch.setattr(offscreen, "by_processor", lambda: by_processor)
-    monkeypatch.setattr(film, "FIRST", 3)
+    monkeypatch.setattr(drawing, "FIRST", 3)
     small = ["width=64", "height=48", f"out={tmp_path / 'a.mp4'}"]
     assert draw("run=x", *small, *more) == 0
     assert len(iio.imread(tmp_path / "a.mp4", plugin="pyav")) == pictures
@@ -176,10 +176,10 @@ def test_a_processor_draws_the_beginning_unless_asked_for_more(
 
 
 def test_a_still_is_of_the_whole_episode(trained, tmp_path, monkeypatch, draws):
-    monkeypatch.setattr(film, "FIRST", 1)
+    monkeypatch.setattr(drawing, "FIRST", 1)
     small = ["width=64", "height=48", f"out={tmp_path / 'a.png'}"]
     assert draw("run=x", *small) == 0
-    poses = film.episode(trained).poses
+    poses = drawing.episode(trained).poses
     middle = next(drawing.frames(FIXED, poses[len(poses) // 2][None], 64, 48))
     np.testing.assert_array_equal(iio.imread(tmp_path / "a.png"), middle)
 

@@ -159,11 +159,7 @@ class Copies:
         return obs
 
     def step(self, u: np.ndarray) -> Outcome:
-        """Actions u [N, m] in [-1, 1]; where an episode ends, another one begins.
-
-        Raises:
-            WorldError: if the environment raises an error, gives NaN, or takes too long.
-        """
+        """Actions u [N, m] in [-1, 1]; where an episode ends, another one begins."""
         low, high = self.env.bounds
         share = (np.clip(np.asarray(u, np.float32), -1, 1) + 1) / 2
         space = self.env.known.space

@@ -3,7 +3,7 @@
     M(q) q'' + h(q, q') = (u, 0, 0),   q = (x, th1, th2), angles from upright, absolute
     M = [[m0+m1+m2, (m1 l1 + m2 L1) c1, m2 l2 c2], [., m1 l1^2 + m2 L1^2 + I1, m2 L1 l2 c12],
          [., ., m2 l2^2 + I2]],   l = L/2, I = m L^2 / 12
-    hills    r = phi(x) of `envs/analytic/hills.py`, after the step
+    hills    r = phi(x) of `envs/analytic/state.py`, after the step
     upright  r = cos th1 + cos th2 - 0.1 x^2
 
 o = (x, th1, th2, x', th1', th2') [6]; a: force on the cart, as a fraction of 40 N; start:
@@ -20,9 +20,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs.analytic.hills import phi
-from hybrid_rl.envs.analytic.integrate import rk4
-from hybrid_rl.envs.analytic.state import Euclidean, fully_observed
+from hybrid_rl.envs.analytic.state import Euclidean, fully_observed, phi, rk4
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.fields import part
 from hybrid_rl.types import EnvState, Spec

@@ -19,6 +19,7 @@ Source: thesis sections 5.3 and 5.4: a second-order point among fixed objects, f
 quick movements. Objects, their sizes, a, b and the error rates are our choice.
 """
 
+import math
 from dataclasses import KW_ONLY
 from typing import NamedTuple
 
@@ -28,10 +29,12 @@ from jax import Array
 
 from hybrid_rl.core.poses import rotated, to_map
 from hybrid_rl.envs.analytic.point_mass import DT, move
-from hybrid_rl.envs.mujoco import mjcf, rounded_boxes
+from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.fields import Discount, FieldError, NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
 
+Shape = tuple[float, ...]  # x, y, angle, half width, half height, rounding [m, rad]
+LEAST = 1e-4  # [m] least half width of a box, and difference of heights
 HALF = 0.03  # [m] half height of the objects, as they are drawn
 SUBSTEPS, CORNER = 10, 2  # steps of a decision; projections of a step, for corners of two objects
 STARTS, CLEAR = 64, 0.02  # candidates for the start; from a surface, in the box's shorter side
@@ -146,7 +149,7 @@ class ContactPlane:
         """MJCF text of the scene for rendering."""
         x, y = ((a + b) / 2 for a, b in zip(self.low, self.high, strict=True))
         about = tuple((shape[0] - x, shape[1] - y, *shape[2:]) for shape in self.objects)
-        geoms = rounded_boxes.drawn(about, HALF)
+        geoms = drawn(about, HALF)
         text = mjcf.text("contact_plane.xml").replace('<geom name="object" size="1"/>', geoms)
         edges = zip(("WEST", "SOUTH", "EAST", "NORTH"), (*self.low, *self.high), strict=True)
         for name, value in edges:
@@ -188,3 +191,44 @@ def _check(shape: tuple[float, ...], low: tuple[float, ...], high: tuple[float, 
             f"objects={list(shape)}: each is x, y, in the box, angle, half width, half height, and "
             "a rounding above 0 that is at most the smaller half"
         )
+
+
+def solid(objects: tuple[Shape, ...], robot: str, height: float) -> tuple[str, str]:
+    """Geoms of objects that are 2 `height` [m] high around z = 0, and contacts with geom `robot`.
+
+    MJX has no contact with cylinders, so that a disc is an upright capsule, longer than the boxes
+    are high: a robot at half height meets its straight part.
+
+    Their names are object_0_0, object_0_1, ... of the first, object_1_0, ... of the second.
+    """
+    geoms, pairs = [], []
+    for i, shape in enumerate(objects):
+        for j, each in enumerate(_parts(shape, height, "capsule")):
+            geoms.append(f'<geom name="object_{i}_{j}" {each} group="3"/>')
+            pairs.append(f'<pair geom1="{robot}" geom2="object_{i}_{j}"/>')
+    return "".join(geoms), f"<contact>{''.join(pairs)}</contact>"
+
+
+def drawn(objects: tuple[Shape, ...], height: float) -> str:
+    """Geoms of the same objects without contacts, of material "object"."""
+    parts = [each for shape in objects for each in _parts(shape, height, "cylinder")]
+    return "".join(f'<geom {each} mass="0" material="object"/>' for each in parts)
+
+
+def _parts(shape: Shape, height: float, disc: str) -> list[str]:
+    """Type, size and pose of each part."""
+    x, y, angle, half_x, half_y, rounding = shape
+    inner_x, inner_y = half_x - rounding, half_y - rounding
+    sizes = [(half_x, inner_y), (inner_x, half_y)]
+    parts = [
+        f'type="box" size="{a:.9g} {b:.9g} {height - i * LEAST:g}" pos="{x:.9g} {y:.9g} 0" '
+        f'euler="0 0 {angle:.9g}" contype="0" conaffinity="0"'
+        for i, (a, b) in enumerate(sizes)
+        if min(a, b) > LEAST  # one lower than the other, or their tops would flicker
+    ]
+    cos, sin = math.cos(angle), math.sin(angle)
+    for a, b in sorted({(i * inner_x, j * inner_y) for i in (-1, 1) for j in (-1, 1)}):
+        at = f"{x + cos * a - sin * b:.9g} {y + sin * a + cos * b:.9g} 0"
+        size = f"{rounding:.9g} {height:g}"
+        parts.append(f'type="{disc}" size="{size}" pos="{at}" contype="0" conaffinity="0"')
+    return parts

@@ -1,6 +1,6 @@
 """No dynamics: the action is the next position on the rail.
 
-    x' = u,   r = phi(x') of `envs/analytic/hills.py`
+    x' = u,   r = phi(x') of `envs/analytic/state.py`
 
 o = x [1] in [-1, 1] m; start: x ~ U(-0.8, 0.8); a decision is 0.2 s, the interval between two
 measurements of the cart and double pendulum; never terminates.
@@ -14,8 +14,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs.analytic.hills import phi
-from hybrid_rl.envs.analytic.state import Euclidean
+from hybrid_rl.envs.analytic.state import Euclidean, phi
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.types import EnvState, Spec
 

@@ -27,7 +27,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs import sensor_noise
-from hybrid_rl.envs.analytic.integrate import rk4
+from hybrid_rl.envs.analytic.state import rk4
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.fields import Discount, Natural, NotNegative, part
 from hybrid_rl.types import EnvState, Spec

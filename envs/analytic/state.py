@@ -1,11 +1,16 @@
-"""Fully observed environments: their state, and what those whose states are vectors share."""
+"""Fully observed environments: their state, what those whose states are vectors share, and rk4."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
+from typing import Any
 
+import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.types import EnvState, Spec
+
+PEAKS = ((-0.6, 0.15, 0.6), (0.05, 0.12, 0.8), (0.65, 0.1, 1.0))  # centre [m], width [m], height
 
 
 def fully_observed(x: Array, reward: Array, terminated: Array | bool = False) -> EnvState:
@@ -55,3 +60,28 @@ class Euclidean(ABC):
     def from_local(self, e: Array) -> Array:
         """The observation [o] at local coordinates e [o]."""
         return self.equilibrium()[0] + e
+
+
+def phi(x: Array) -> Array:
+    """sum_i h_i exp(-(x - c_i)^2 / (2 w_i^2)) [...] at x [...] [m]; the highest peak is at 0.65."""
+    each = [h * jnp.exp(-0.5 * ((x - centre) / width) ** 2) for centre, width, h in PEAKS]
+    return sum(each[1:], each[0])
+
+
+def rk4(f: Callable[[Any], Any], x: Any, dt: float, steps: int = 1) -> Any:
+    """The solution of dx/dt = f(x) after `steps` of dt [s], by the classical Runge-Kutta method.
+
+    x is any pytree of arrays.
+    """
+
+    def add(x: Any, k: Any, scale: float) -> Any:
+        return jax.tree.map(lambda x, k: x + scale * k, x, k)
+
+    for _ in range(steps):
+        a = f(x)
+        b = f(add(x, a, dt / 2))
+        c = f(add(x, b, dt / 2))
+        d = f(add(x, c, dt))
+        slope = jax.tree.map(lambda a, b, c, d: (a + 2 * b + 2 * c + d) / 6, a, b, c, d)
+        x = add(x, slope, dt)
+    return x

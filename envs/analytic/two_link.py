@@ -19,7 +19,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs.analytic.integrate import rk4
+from hybrid_rl.envs.analytic.state import rk4
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.fields import NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec

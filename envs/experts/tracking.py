@@ -18,7 +18,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs import sawyer_torque
-from hybrid_rl.envs.mujoco import inverse_dynamics
+from hybrid_rl.envs.mujoco import kinematics
 from hybrid_rl.envs.sawyer_torque import DT, LIMITS, SawyerTorque
 from hybrid_rl.fields import Must, NotNegative, Positive, part
 from hybrid_rl.types import Params, Spec
@@ -48,7 +48,7 @@ class ComputedTorque:
         feedback = self.frequency**2 * error + 2 * self.frequency * (rate_ref - rate)
         acceleration = (rate_next - rate_ref) / DT + feedback
         model = sawyer_torque.asset(self.world.damping)
-        return _action(inverse_dynamics.torques(model, q, rate, acceleration)), state, {}
+        return _action(kinematics.torques(model, q, rate, acceleration)), state, {}
 
     def greedy(self) -> "ComputedTorque":
         """This controller, which does not explore."""

@@ -47,20 +47,12 @@ class NoGraphicsError(OSError):
 
 
 def backend() -> str:
-    """The first of BACKENDS that works on this machine, or the one that MUJOCO_GL names.
-
-    Raises:
-        NoGraphicsError: if none works.
-    """
+    """The first of BACKENDS that works on this machine, or the one that MUJOCO_GL names."""
     return chosen()[0]
 
 
 def by_processor() -> bool:
-    """Whether the processor draws, a few pictures a second, and no graphics card.
-
-    Raises:
-        NoGraphicsError: if nothing does.
-    """
+    """Whether the processor draws, a few pictures a second, and no graphics card."""
     return any(name in chosen()[1].lower() for name in RASTERISERS)
 
 
@@ -82,11 +74,7 @@ def chosen() -> tuple[str, str]:
 
 
 def lend() -> None:
-    """Let MuJoCo's own Renderer and Gymnasium's draw with `backend()`, if a command disabled them.
-
-    Raises:
-        NoGraphicsError: if no backend works.
-    """
+    """Let renderers of MuJoCo and Gymnasium draw with `backend()`, if a command disabled them."""
     if os.environ.get("MUJOCO_GL") == "disable":
         os.environ["MUJOCO_GL"] = backend()
         from mujoco.rendering.classic import gl_context  # which reads MUJOCO_GL
@@ -107,9 +95,6 @@ class Canvas:
     scene: MJCF text, or a file for `mjcf.spec`; `scenery.dressed` adds the light that it lacks.
     width, height: [pixels]. smooth: whether edges are, if the processor has to draw, which then
     takes twice as long.
-
-    Raises:
-        NoGraphicsError: if no backend works on this machine.
     """
 
     def __init__(

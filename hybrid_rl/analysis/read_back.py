@@ -8,8 +8,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from hybrid_rl.analysis.drawing import SUFFIXES
-from hybrid_rl.analysis.film import Film, draw_film, episode
+from hybrid_rl.analysis.drawing import SUFFIXES, Film, draw_film, episode
 from hybrid_rl.analysis.results import RunFolder, find
 from hybrid_rl.cli.arguments import output
 from hybrid_rl.data.replay import unpack

@@ -163,7 +163,11 @@ def differences(runs: Sequence[RunFolder], expected: Sequence[str] = ()) -> list
         if key not in NOT_SETTINGS
         and not key.endswith(IMPLEMENTATION)
         and ("." in key or UNSET not in column)
-        and not (_is_of_some(column) and any(parent in differ for parent in _parents(key)))
+        and not (  # of a group that only some have
+            UNSET in column
+            and len(set(column)) == 2
+            and any(parent in differ for parent in _parents(key))
+        )
     }
     shortest: dict[tuple[str, tuple[str, ...]], str] = {}
     for key in sorted(differ, key=lambda key: (key.count("."), len(key), key)):
@@ -219,11 +223,6 @@ def _column(settings: Sequence[Mapping[str, Any]], key: str) -> tuple[str, ...]:
         return SET if any(name.startswith(f"{key}.") for name in each) else UNSET
 
     return tuple(map(one, settings))
-
-
-def _is_of_some(column: tuple[str, ...]) -> bool:
-    """Whether some runs lack a key, and the others have the same value."""
-    return UNSET in column and len(set(column)) == 2
 
 
 def _last(key: str) -> str:

@@ -7,19 +7,132 @@
 
 Before the first 1, f = -1 everywhere. The determinant of Fisher's information, which the thesis
 prints, is 0 for one measurement of two or more coordinates. A fixed slope replaces Platt's fit,
-which degenerates where labels separate. Source: thesis section 5.3; core.support_vectors.
+which degenerates where labels separate. The soft-margin machine is solved by sequential minimal
+optimisation in fixed arrays:
+
+    f(s) = sum_i v_i k(s, s_i) + b,   k = exp(-|s - s'|^2 / (2 l^2)),   y_i = -1 or 1
+    max_v  sum_i y_i v_i - 1/2 v' K v,   sum_i v_i = 0,   0 <= y_i v_i <= C w_i
+
+One iteration changes the pair of duals (i, j) that violates optimality most, to second order:
+
+    E = y - K v,   i = argmax {E : v can rise}
+    j = argmax {(E_i - E_j)^2 / (2 - 2 k_ij) : v can fall, E_j < E_i}
+    v_i += t,  v_j -= t,   t = (E_i - E_j) / (2 - 2 k_ij), up to the bounds
+    b = (max {E : v can rise} + min {E : v can fall}) / 2
+
+A new point has v = 0, which keeps all constraints, so that the machine goes on from where it was.
+Source: thesis section 5.3; Fan, Chen and Lin 2005, Working Set Selection Using Second Order
+Information for Training Support Vector Machines, as in LIBSVM; here with v_i = y_i alpha_i.
 """
 
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import support_vectors as svm
-from hybrid_rl.core.support_vectors import Machine
 from hybrid_rl.fields import Count, NotNegative, Positive, part
 from hybrid_rl.types import Spec
+
+
+class Machine(NamedTuple):
+    """Up to C labelled points and the solution for them."""
+
+    s: Array  # [C, d]
+    label: Array  # [C] -1 or 1; 0 where there is no point
+    weight: Array  # [C] w: how often the point counts
+    dual: Array  # [C] v
+    output: Array  # [C] K v
+    count: Array  # [] points
+
+
+def begin(capacity: int, size: int) -> Machine:
+    """A machine without points, for up to `capacity` points of `size` coordinates."""
+    zeros = jnp.zeros(capacity)
+    none = jnp.zeros((), jnp.int32)
+    return Machine(jnp.zeros((capacity, size)), zeros, zeros, zeros, zeros, none)
+
+
+def kernel(s: Array, points: Array, length: float) -> Array:
+    """k [N] of s [d] with points [N, d]."""
+    return jnp.exp(-0.5 * jnp.sum((points - s[None]) ** 2, -1) / length**2)
+
+
+def add(machine: Machine, s: Array, label: Array, length: float, apart: float) -> Machine:
+    """The machine with a point s [d] of `label` [], not yet optimised.
+
+    A point closer than `apart` to one with the same label adds 1 to that one's weight. So does any
+    point, to the nearest of its label, where the machine is full; if there is none, it is dropped.
+    """
+    distance = jnp.sqrt(jnp.sum((machine.s - s[None]) ** 2, -1))
+    distance = jnp.where(machine.label == label, distance, jnp.inf)
+    nearest = jnp.argmin(distance)
+    full = machine.count >= len(machine.label)
+    joins = jnp.isfinite(distance[nearest]) & (full | (distance[nearest] < apart))
+    enters = ~joins & ~full
+    slot = jnp.where(joins, nearest, jnp.minimum(machine.count, len(machine.label) - 1))
+    output = kernel(s, machine.s, length) @ machine.dual
+    return Machine(
+        machine.s.at[slot].set(jnp.where(enters, s, machine.s[slot])),
+        machine.label.at[slot].set(jnp.where(enters, label, machine.label[slot])),
+        machine.weight.at[slot].add(jnp.where(enters | joins, 1.0, 0.0)),
+        machine.dual,
+        machine.output.at[slot].set(jnp.where(enters, output, machine.output[slot])),
+        machine.count + enters.astype(jnp.int32),
+    )
+
+
+def _errors(machine: Machine, cost: float) -> tuple[Array, Array, Array, Array]:
+    """E [C] where v can rise, else -inf; where it can fall, else inf; lowest and highest v [C]."""
+    bound = cost * machine.weight
+    low = jnp.where(machine.label < 0, -bound, 0.0)
+    high = jnp.where(machine.label > 0, bound, 0.0)
+    error = machine.label - machine.output
+    rising = jnp.where(machine.dual < high, error, -jnp.inf)
+    falling = jnp.where(machine.dual > low, error, jnp.inf)
+    return rising, falling, low, high
+
+
+def optimise(machine: Machine, iterations: int, length: float, cost: float) -> Machine:
+    """The machine after `iterations` on pairs of duals; `cost` is C."""
+
+    def one(_: Array, machine: Machine) -> Machine:
+        rising, falling, low, high = _errors(machine, cost)
+        i = jnp.argmax(rising)
+        k_i = kernel(machine.s[i], machine.s, length)
+        curvature = jnp.maximum(2 - 2 * k_i, 1e-6)
+        gap = jnp.where(jnp.isfinite(falling), rising[i] - falling, -jnp.inf)
+        j = jnp.argmax(jnp.where(gap > 0, gap**2 / curvature, -jnp.inf))
+        step = jnp.minimum(gap[j] / curvature[j], high[i] - machine.dual[i])
+        step = jnp.minimum(step, machine.dual[j] - low[j])
+        step = jnp.where(jnp.isfinite(rising[i]) & (gap[j] > 0), step, 0.0)
+        k_j = kernel(machine.s[j], machine.s, length)
+        return machine._replace(
+            dual=machine.dual.at[i].add(step).at[j].add(-step),
+            output=machine.output + step * (k_i - k_j),
+        )
+
+    return jax.lax.fori_loop(0, iterations, one, machine)
+
+
+def bias(machine: Machine, cost: float) -> Array:
+    """b []: -1 while all labels are -1, and 0 without points."""
+    rising, falling, _, _ = _errors(machine, cost)
+    up, down = jnp.max(rising), jnp.min(falling)
+    up, down = jnp.where(jnp.isfinite(up), up, down), jnp.where(jnp.isfinite(down), down, up)
+    return jnp.where(machine.count > 0, (up + down) / 2, 0.0)
+
+
+def gap(machine: Machine, cost: float) -> Array:
+    """max E where v can rise minus min E where it can fall []; 0 where the duals are optimal."""
+    rising, falling, _, _ = _errors(machine, cost)
+    apart = jnp.max(rising) - jnp.min(falling)
+    return jnp.where(jnp.isfinite(apart), jnp.maximum(apart, 0.0), 0.0)
+
+
+def decision(machine: Machine, s: Array, length: float, cost: float) -> Array:
+    """f(s) [] at s [d]."""
+    return kernel(s, machine.s, length) @ machine.dual + bias(machine, cost)
 
 
 @part
@@ -40,17 +153,17 @@ class SupportVectors:
 
     def init(self, key: Array, spec: Spec) -> Machine:
         """The belief before any measurement; the key is not used."""
-        return svm.begin(self.capacity, self.size)
+        return begin(self.capacity, self.size)
 
     def add(self, state: Machine, s: Array, y: Array, key: Array) -> Machine:
         """The belief after y [], 0 or 1, was measured at s [d]; the key is not used."""
         label = jnp.where(y > 0.5, 1.0, -1.0)
-        state = svm.add(state, s, label, self.length, self.apart)
-        return svm.optimise(state, self.iterations, self.length, self.cost)
+        state = add(state, s, label, self.length, self.apart)
+        return optimise(state, self.iterations, self.length, self.cost)
 
     def decision(self, state: Machine, s: Array) -> Array:
         """f(s) [], positive where the measurement is more likely 1."""
-        f = svm.decision(state, s, self.length, self.cost)
+        f = decision(state, s, self.length, self.cost)
         return jnp.where(state.count > 0, f, -1.0)
 
     def predict(self, state: Machine, s: Array) -> tuple[Array, Array]:
@@ -90,5 +203,5 @@ class SupportVectors:
         return {
             "belief/points": state.count.astype(jnp.float32),
             "belief/full": (state.count >= self.capacity).astype(jnp.float32),
-            "belief/gap": svm.gap(state, self.cost),
+            "belief/gap": gap(state, self.cost),
         }

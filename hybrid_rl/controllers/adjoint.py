@@ -18,6 +18,7 @@ of its loop, as the response to a correction may begin in the wrong direction.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -25,7 +26,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import adjoint, decay, lyapunov
+from hybrid_rl.core import adjoint, decay
 from hybrid_rl.core.sampling import Kept
 from hybrid_rl.fields import Count, FieldError, Positive, Share, part
 from hybrid_rl.protocols import Model, Objective, Policy, StabilizingPolicy
@@ -181,10 +182,25 @@ class _Plan:
                 variance = self.of.policy.variance(self.params.policy, self.x)
                 metrics |= adjoint.per_variance(insertion, variance)
         if self.of.lyapunov is not None:
-            record = lyapunov.record(self.of.lyapunov.lyapunov, self.step, self.mean, path)
-            metrics |= {
-                "planner/lyapunov": record.now,
-                "planner/lyapunov_rate": record.rate,
-                "planner/lyapunov_bound": record.bound,
-            }
+            metrics |= self.stability(self.of.lyapunov.lyapunov, path)
         return metrics
+
+    def stability(self, V: Callable[[Array], Array], path: Path) -> dict[str, Array]:
+        """V at the first state of a path, and how much it changes in a decision.
+
+            rate  = V(f(x, pi(x))) - V(x)                                 under the policy
+            bound = max_t V(f(x_t, u_t)) - V(f(x_t, pi(x_t)))             thesis eq. (6.15), beta
+
+        Where f is affine in u, V(f(x, u)) - V(f(x, pi)) is V_x h (u - pi) dt to first order, as
+        printed. Theorem 3, V(x^lambda) - V(x) <= lambda beta, is first-order in lambda.
+        """
+
+        def apart(x: Array, u: Array) -> Array:
+            return V(self.step(x, u)) - V(self.step(x, self.mean(x)))
+
+        x, now = path.x[0], V(path.x[0])
+        return {
+            "planner/lyapunov": now,
+            "planner/lyapunov_rate": V(self.step(x, self.mean(x))) - now,
+            "planner/lyapunov_bound": jnp.max(jax.vmap(apart)(path.x[:-1], path.u)),
+        }

@@ -11,7 +11,6 @@ from typing import Any
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import lyapunov
 from hybrid_rl.protocols import Controller, Model, StabilizingPolicy
 from hybrid_rl.types import Params, Spec
 
@@ -38,7 +37,7 @@ class GuardedController:
             return u, state, metrics
         x = self.model.lift(params.model, obs)
         step = partial(self.model.step, params.model)
-        out = lyapunov.exits_level_set(self.policy.lyapunov, step, x, u, self.level)
+        out = self.policy.lyapunov(step(x, u)) > self.level
         u = jnp.where(out, jnp.clip(self.policy.mean(params.policy, x), -1, 1), u)
         return u, state, {**metrics, "planner/handed_over": out.astype(jnp.float32)}
 

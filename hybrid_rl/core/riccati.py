@@ -1,4 +1,4 @@
-"""The regulator of a linear system, by Riccati's equation.
+"""The regulator of a linear system, by Riccati's equation; linearisation of known dynamics.
 
     e' = A e + B u,   P = Q + A' P A - A' P B K,   K = (R + B' P B)^-1 B' P A,   u = -K e
 
@@ -11,16 +11,21 @@ steps from P = 0 take log2(T) doublings (structure-preserving doubling, Chu et a
 from G = B R^-1 B', H = Q. H of k doublings is the cost to go over 2^k steps.
 """
 
+from collections.abc import Callable
+from functools import cache
 from typing import NamedTuple
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
 from scipy.linalg import solve_discrete_are
 
 from hybrid_rl.core.solving import solve
+from hybrid_rl.protocols import AnalyticEnv
 from hybrid_rl.types import Room
 
+STILL = 1e-4  # motion in a decision at an equilibrium, of the size of its state
 LEAST = 1e-300  # modulus of an eigenvalue, so that it has a logarithm
 SLOW = 0.1  # growth in a time constant of the regulator below which a system is not unstable
 
@@ -93,3 +98,32 @@ def as_weights(name: str, weights: tuple[float, ...], size: int) -> np.ndarray:
     if len(weights) not in (1, size):
         raise ValueError(f"{name}={list(weights)}: must hold 1 weight or {size}")
     return np.diag(np.broadcast_to(np.asarray(weights, float), (size,)))
+
+
+def linearise(step: Callable[[Array, Array], Array], e: Array, u: Array) -> tuple[Array, Array]:
+    """A [d, d] and B [d, m] of `step` at e [d], u [m]."""
+    return jax.jacfwd(step, argnums=(0, 1))(e, u)
+
+
+@cache
+def at_equilibrium(world: AnalyticEnv) -> tuple[np.ndarray, np.ndarray]:
+    """A [d, d] and B [d, m] of `world` at its equilibrium, in local coordinates, in float64."""
+    with jax.enable_x64(True), jax.ensure_compile_time_eval():
+        x, u = world.equilibrium()
+
+        def step(e: Array, u: Array) -> Array:
+            return world.to_local(world.dynamics(world.from_local(e), u))
+
+        e = world.to_local(x)
+        a, b = map(np.asarray, linearise(step, e, u))
+        moved = float(np.abs(step(e, u) - e).max())
+    rests = moved < STILL * max(1, float(np.abs(x).max()))
+    if not (rests and np.isfinite(a).all() and np.isfinite(b).all()):
+        line = "must be a state and an action at rest, where dynamics have derivatives"
+        raise ValueError(f"env: {type(world).__name__}.equilibrium(): {line}; moves by {moved:.2g}")
+    return a, b
+
+
+def sizes(world: AnalyticEnv) -> tuple[int, int]:
+    """d and m: the numbers of local coordinates and of actions."""
+    return jax.eval_shape(lambda: world.to_local(world.equilibrium()[0])).size, world.spec.act

@@ -14,7 +14,7 @@ Bagnell 2011 (DAgger). The teacher drives for the `first` decisions (conf/algo/d
 they are the first demonstration, on which `first_steps` Adam steps are taken at its end.
 """
 
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -22,12 +22,87 @@ import optax
 from flax import struct
 from jax import Array
 
-from hybrid_rl.core import statistics, teaching
+from hybrid_rl.core import statistics
 from hybrid_rl.core.batching import when_any
-from hybrid_rl.core.teaching import Answer
 from hybrid_rl.fields import Count, FieldError, Natural, NotNegative, Positive, Share, part
 from hybrid_rl.protocols import Controller, LearnedPolicy, Model, Target
 from hybrid_rl.types import Batch, Params, Spec
+
+RATE = 0.02  # of the running mean of the evidence; our choice
+
+
+@struct.dataclass
+class Labels:
+    """What the teacher answered; `count` labels so far, of which the last C are kept."""
+
+    obs: Array  # [C, o]
+    action: Array  # [C, m]
+    count: Array  # [] int32
+
+
+@struct.dataclass
+class Queried:
+    """What targets that choose queries consult."""
+
+    labels: Labels
+    scale: Array  # [o] standard deviations of the first demonstration; 1 without one
+    evidence: Any  # sum over the labels of what the target asked for; None: nothing
+
+
+def empty(capacity: int, o: int, m: int) -> Labels:
+    """No labels yet."""
+    return Labels(jnp.zeros((capacity, o)), jnp.zeros((capacity, m)), jnp.zeros((), jnp.int32))
+
+
+def add(labels: Labels, obs: Array, action: Array, when: Array) -> Labels:
+    """The labels with obs [T, o] and action [T, m] if `when` []; T divides C."""
+    slot = labels.count % len(labels.obs)
+
+    def put(ring: Array, new: Array) -> Array:
+        old = jax.lax.dynamic_slice_in_dim(ring, slot, len(new))
+        return jax.lax.dynamic_update_slice_in_dim(ring, jnp.where(when, new, old), slot, 0)
+
+    count = labels.count + jnp.where(when, len(obs), 0)
+    return Labels(put(labels.obs, obs), put(labels.action, action), count)
+
+
+def draw(labels: Labels, size: int, key: Array) -> tuple[Array, Array]:
+    """obs [size, o] and action [size, m], drawn uniformly with replacement; needs a label."""
+    filled = jnp.clip(labels.count, 1, len(labels.obs))
+    drawn = jax.random.randint(key, (size,), 0, filled)
+    return labels.obs[drawn], labels.action[drawn]
+
+
+class Answer(NamedTuple):
+    """Observations and the actions there."""
+
+    obs: Array  # [T, o]
+    action: Array  # [T, m]
+
+
+def answer(
+    teacher: Controller,
+    model: Model | None,
+    params: Params,
+    rest: Any,
+    obs: Array,
+    length: int,
+    key: Array,
+) -> Answer:
+    """`length` decisions of `teacher` from obs [o] and its state `rest`; paths follow `model`.
+
+    The observation is the first part of the model's planning state. The key is consumed.
+    """
+
+    def decide(carry: tuple[Array, Any], key: Array) -> tuple[tuple[Array, Any], Answer]:
+        x, held = carry
+        u, held, _ = teacher.act(params, held, x, key)
+        after = x
+        if model is not None and length > 1:
+            after = model.step(params.model, model.lift(params.model, x), u)[: x.size]
+        return (after, held), Answer(x, u)
+
+    return jax.lax.scan(decide, (obs, rest), jax.random.split(key, length))[1]
 
 
 @struct.dataclass
@@ -36,7 +111,7 @@ class DAggerState:
 
     policy: Any
     optimiser: Any
-    labels: teaching.Labels
+    labels: Labels
     evidence: Any  # mean over the labels of what the target sums; None: nothing
     seen: statistics.Running  # of the observations of the first demonstration
     rest: Any  # the teacher's state before an answer
@@ -102,7 +177,7 @@ class DAgger:
         return DAggerState(
             policy,
             optax.adam(self.learning_rate).init(policy),
-            teaching.empty(self.capacity, spec.obs, spec.act),
+            empty(self.capacity, spec.obs, spec.act),
             self._no_evidence(policy, spec),
             statistics.init(spec.obs),
             rest,
@@ -126,7 +201,7 @@ class DAgger:
         evidence = jax.tree.map(lambda mean: state.labels.count * mean, state.evidence)
         return {
             "policy": state.policy,
-            "labels": teaching.Queried(state.labels, state.seen.scale, evidence),
+            "labels": Queried(state.labels, state.seen.scale, evidence),
         }
 
     def update(
@@ -173,7 +248,7 @@ class DAgger:
         asked, made = needed((due | leading, none), (params, state.rest, x, answering))
         slot = jnp.where(due, state.queries % len(state.decision), len(state.decision))
         return state.replace(
-            labels=teaching.add(state.labels, made.obs, made.action, asked),
+            labels=add(state.labels, made.obs, made.action, asked),
             information=state.information.at[slot].set(value, mode="drop"),
             decision=state.decision.at[slot].set(state.decisions, mode="drop"),
             queries=state.queries + due,
@@ -200,7 +275,7 @@ class DAgger:
         """What is to be large [] at x [o]: the target, or for an oracle the clone's error."""
         if self.target is not None:
             return self.target.log_density(params, x)
-        u = teaching.answer(self._teacher, None, params, state.rest, x, 1, key).action[0]
+        u = answer(self._teacher, None, params, state.rest, x, 1, key).action[0]
         return jnp.sum((self.policy.mean(state.policy, x) - u) ** 2)
 
     def _due(self, state: DAggerState, value: Array) -> Array:
@@ -216,7 +291,7 @@ class DAgger:
         """`asked` with the teacher's answer if it is due."""
         due, none = asked
         params, rest, x, key = argument
-        new = teaching.answer(self._teacher, self.model, params, rest, x, self.length, key)
+        new = answer(self._teacher, self.model, params, rest, x, self.length, key)
         return due, jax.tree.map(lambda new, none: jnp.where(due, new, none), new, none)
 
     def fit(self, state: DAggerState, steps: Array | int, key: Array) -> DAggerState:
@@ -225,7 +300,7 @@ class DAgger:
 
         def one(i: Array, carry: tuple) -> tuple:
             policy, optimiser, _ = carry
-            x, u = teaching.draw(state.labels, self.batch_size, jax.random.fold_in(key, i))
+            x, u = draw(state.labels, self.batch_size, jax.random.fold_in(key, i))
             u = jnp.clip(u, -self.edge, self.edge)
             value, grads = jax.value_and_grad(
                 lambda policy: -self.policy.log_prob(policy, x, u).mean()
@@ -245,9 +320,9 @@ class DAgger:
         if state.evidence is None or evidence is None:
             return state
         params = params._replace(policy=state.policy)
-        x = teaching.draw(state.labels, self.batch_size, key)[0]
+        x = draw(state.labels, self.batch_size, key)[0]
         each = jax.vmap(lambda x: evidence(params, x))(x)
-        rate = jnp.maximum(1 / state.decisions, teaching.RATE)
+        rate = jnp.maximum(1 / state.decisions, RATE)
 
         def mean(old: Array, each: Array) -> Array:
             return old + rate * (each.mean(0) - old)

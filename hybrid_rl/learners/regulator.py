@@ -18,8 +18,8 @@ from flax import struct
 from jax import Array
 
 from hybrid_rl.core import riccati
-from hybrid_rl.core.analytic import linearise
 from hybrid_rl.core.lifting import lifted_spec
+from hybrid_rl.core.riccati import linearise
 from hybrid_rl.core.solving import solve
 from hybrid_rl.fields import FILLED, Count, FieldError, NotNegative, Positive, part
 from hybrid_rl.protocols import Balanced, GoalPolicy, Model

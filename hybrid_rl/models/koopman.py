@@ -51,14 +51,11 @@ class Koopman:
 
     def std(self, params: dict[str, Any], x: Array) -> Array:
         """Standard deviation [n] of K s at x [n] without action, in units of the noise's."""
-        s = self.regressors(params, x, jnp.zeros(self._actions(params, x.size)))
+        m = (params["K"].shape[1] - x.size) // (1 + len(self.products))
+        s = self.regressors(params, x, jnp.zeros(m))
         return jnp.broadcast_to(jnp.sqrt(least_squares.leverage(params["spread"], s)), x.shape)
 
     def draw_model(self, params: dict[str, Any], noise: float, key: Array) -> dict[str, Any]:
         """Parameters with K from its posterior, K + noise N(0, I) W'. The key is consumed."""
         e = jax.random.normal(key, params["K"].shape)
         return {**params, "K": params["K"] + noise * e @ params["spread"].T}
-
-    def _actions(self, params: dict[str, Any], n: int) -> int:
-        """m, from the sizes of K."""
-        return (params["K"].shape[1] - n) // (1 + len(self.products))

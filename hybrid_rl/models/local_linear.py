@@ -9,7 +9,7 @@ from typing import Any
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import analytic
+from hybrid_rl.core import riccati
 from hybrid_rl.fields import part
 from hybrid_rl.protocols import Analytic
 from hybrid_rl.types import Spec
@@ -31,7 +31,7 @@ class LocalLinear:
 
     def step(self, params: Any, x: Array, u: Array) -> Array:
         """The next observation [o]."""
-        a, b = analytic.at_equilibrium(self.world)
+        a, b = riccati.at_equilibrium(self.world)
         e, hold = self.world.to_local(x), self.world.equilibrium()[1]
         e = jnp.asarray(a, e.dtype) @ e + jnp.asarray(b, e.dtype) @ (u - hold)
         return self.world.from_local(e)

@@ -4,5 +4,5 @@
     a robot     actor -> rows -> robot_loop -> parameters  two processes (robot_process)
     your loop   run.online -> rows -> learner              one process
 
-`acting` decides in all of them; `learner` learns from rows; `loops` chooses the loop of an agent.
+`acting` decides in all of them; `learner` learns from rows.
 """

@@ -16,7 +16,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.core import analytic, riccati
+from hybrid_rl.core import riccati
 from hybrid_rl.fields import FieldError, Positive, part
 from hybrid_rl.protocols import Analytic
 from hybrid_rl.types import Room, Spec
@@ -34,13 +34,13 @@ class Regulator:
 
     def __post_init__(self) -> None:
         self._weights()
-        size = analytic.sizes(self.world)[0]
+        size = riccati.sizes(self.world)[0]
         if not {*self.free} < {*range(size)}:
             raise FieldError(self, "free", f"must be some of 0 to {size - 1}, not all")
 
     def solve(self) -> tuple[np.ndarray, np.ndarray]:
         """K [m, d] and P [d, d]."""
-        a, b = analytic.at_equilibrium(self.world)
+        a, b = riccati.at_equilibrium(self.world)
         try:
             return riccati.regulator(a, b, *self._weights())
         except np.linalg.LinAlgError:
@@ -49,7 +49,7 @@ class Regulator:
 
     def _weights(self) -> tuple[np.ndarray, np.ndarray]:
         """Q [d, d] and R [m, m]."""
-        d, m = analytic.sizes(self.world)
+        d, m = riccati.sizes(self.world)
         q = riccati.as_weights("equilibrium.state_weights", self.state_weights, d)
         return q, riccati.as_weights("equilibrium.action_weights", self.action_weights, m)
 
@@ -83,7 +83,7 @@ class Regulator:
         """What it leaves to others before its action is clipped; None: the world is stable."""
         with jax.ensure_compile_time_eval():
             spare = 1 - np.abs(np.asarray(self.world.equilibrium()[1], float))
-        a, b = analytic.at_equilibrium(self.world)
+        a, b = riccati.at_equilibrium(self.world)
         return riccati.room(a, b, self.solve()[0], spare)
 
     def lyapunov(self, x: Array) -> Array:

@@ -207,7 +207,9 @@ def parts(part: Any) -> Iterator[tuple[Any, str, Any, Any]]:
     if isinstance(part, list | tuple | dict):
         for inner in part.values() if isinstance(part, dict) else part:
             yield from parts(inner)
-    elif is_dataclass(part) and not isinstance(part, type) and not _is_world(part):
+    elif callable(getattr(part, "reset", None)):  # a world
+        return
+    elif is_dataclass(part) and not isinstance(part, type):
         for of in fields(part):
             value, kinds = getattr(part, of.name, None), [of.type]
             for kind in kinds:  # of unions, tuples and annotations, what they are of
@@ -218,10 +220,6 @@ def parts(part: Any) -> Iterator[tuple[Any, str, Any, Any]]:
                 if not (inner is None or isinstance(inner, bool | int | float | str)):
                     yield part, of.name, known[0] if len(known) == 1 else None, inner
                     yield from parts(inner)
-
-
-def _is_world(part: object) -> bool:
-    return callable(getattr(part, "reset", None))
 
 
 def of_user(part: object) -> bool:

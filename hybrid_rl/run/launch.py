@@ -1,7 +1,11 @@
-"""A program from the configurations of its runs to their summaries, new or resumed."""
+"""A program from the configurations of its runs to their summaries, new or resumed.
+
+A `Job` has its runs in their folders: settings, records and checkpoints, up to summary.json.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack
+from dataclasses import dataclass, field
 from importlib.util import find_spec
 from itertools import cycle
 from pathlib import Path
@@ -10,24 +14,27 @@ from typing import Any
 from omegaconf import DictConfig
 
 from hybrid_rl.errors import FAULTS, DivergenceError, UsageError, install
-from hybrid_rl.files.atomic import refuse_link
+from hybrid_rl.files.atomic import naming, refuse_link
 from hybrid_rl.files.lock import lock
 from hybrid_rl.files.reading import json_file
 from hybrid_rl.networks import precision
 from hybrid_rl.run import folder, start
-from hybrid_rl.run.checkpoints import checkpoint, manifest
-from hybrid_rl.run.job import Job, Output, written
+from hybrid_rl.run.checkpoints import checkpoint
+from hybrid_rl.run.checkpoints.store import Shelf
+from hybrid_rl.run.logs.log import RunLog
 from hybrid_rl.run.logs.progress import Progress
-from hybrid_rl.run.logs.records import changes
-from hybrid_rl.run.machine import memory
+from hybrid_rl.run.logs.records import Row, changes, flatten_keys
+from hybrid_rl.run.machine import memory, provenance
 from hybrid_rl.run.machine.jax_settings import prepare, refuse_x64
-from hybrid_rl.run.members import Member, axis_of, joined
+from hybrid_rl.run.members import Member, axis_of, joined, loop_of
 from hybrid_rl.run.schedule import Schedule
 from hybrid_rl.run.session import Session
 from hybrid_rl.run.start import Start
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings.build import Run
 from hybrid_rl.settings.values import check, one_of, whole
+from hybrid_rl.settings.words import plain
+from hybrid_rl.training.loop import Axis, Loop
 
 OF_A_SESSION = ("resume", "total_steps", "run_dir", "version", "logger")
 OF_A_SESSION += ("compile_cache", "precision", "recipe", "config_dir")
@@ -35,6 +42,120 @@ FREE = ("resume", "total_steps", "compile_cache", "precision")  # keys of a resu
 ONLY = "with resume only total_steps and precision can be changed"
 
 Handler = Callable[[Callable[[int], None]], AbstractContextManager]
+
+
+class Output:
+    """Where a run reports, besides its folder: the console, and a function of the user's.
+
+    The function is called with every new row, a dictionary. Where it returns False, `ask` is called
+    with 0, and it gets the rows up to the end. Where it raises, also; `problem` is what it raised,
+    and it is not called again.
+    """
+
+    def __init__(self, function: Callable[[Row], Any] | None = None, progress: bool = True) -> None:
+        self._function, self._asked, self.progress = function, False, progress
+        self.ask: Callable[[int], None] = lambda number: None
+        self.problem: BaseException | None = None
+
+    def __call__(self, row: Row) -> None:
+        """Call the function."""
+        if self._function is None or self.problem is not None:
+            return
+        try:
+            ends = self._function(dict(row)) is False
+        except FAULTS as problem:
+            self.problem, ends = problem, True
+        if ends and not self._asked:
+            self._asked = True
+            self.ask(0)
+
+    def raise_problem(self) -> None:
+        """Raise what the function raised, if it did; the run has ended with a checkpoint."""
+        if self.problem is not None:
+            raise self.problem
+
+
+@dataclass(frozen=True)
+class Job:
+    """K runs, their folders, what sets each apart, and the numbers in which they differ."""
+
+    runs: Sequence[Run]
+    folders: Sequence[Path]
+    values: Sequence[Mapping[str, float]] = ({},)  # [K] key -> value
+    axis: Axis = field(default_factory=Axis)
+
+    def loop(self) -> Loop:
+        """The loop that trains all learners."""
+        run = self.runs[0]
+        most = min(run.config.log_every, run.config.total_steps)  # decisions of a call
+        stride = -(-most // run.config.num_envs)
+        seeds = run.seeds * len(self.runs)
+        return loop_of(run.agent, seeds, stride, self.folders[0], self.axis)
+
+    @property
+    def whole(self) -> Path:
+        """The folder that `resume` continues."""
+        return self.folders[0] if len(self.folders) == 1 else self.folders[0].parent
+
+    def shelf(self, loop: Loop, output: Output, stack: ExitStack) -> Shelf:
+        """The records, open until the end of `stack`, and the checkpoints."""
+        logs, several = [], len(self.runs) > 1
+        for run, run_dir in zip(self.runs, self.folders, strict=True):
+            stack.enter_context(naming(run_dir))
+            more = {"run_dir": str(run_dir)} if several else {}
+            log = RunLog(run_dir, run.seeds, plain(run.config), lambda row, m=more: output(row | m))
+            logs.append(stack.enter_context(log))
+        folders = [refuse_link(run_dir / "checkpoints") for run_dir in self.folders]
+        settings = [written(run.config) for run in self.runs]
+        return Shelf(loop, folders, settings, logs, self.runs[0].config.checkpoint_replay)
+
+    def write_settings(self) -> None:
+        """Write config.yaml of each run, and sweep.json of several."""
+        for run, run_dir in zip(self.runs, self.folders, strict=True):
+            folder.write(run_dir, run.config)
+        if len(self.runs) > 1:
+            folder.write_sweep(self.whole, self.values)
+
+    def write_summaries(self, session: Session) -> list[dict[str, Any]]:
+        """The contents of summary.json of each run, which are written."""
+        shelf, summaries = session.shelf, []
+        for run, log, share in zip(self.runs, shelf.logs, shelf.shares(), strict=True):
+            summaries.append(_summary(run.config, session, log.run_dir, share))
+            log.summary(summaries[-1])
+        return summaries
+
+
+def _summary(config: DictConfig, session: Session, run_dir: Path, share: slice) -> dict[str, Any]:
+    """The contents of summary.json of the learners in `share`."""
+    values = plain(config)
+    ends, rate = session.record.ends, session.record.learning.rate
+    return {
+        "task": config.task,
+        "algo": config.algo,
+        "seeds": list(session.loop.seeds[share]),
+        "total_steps": session.step,
+        "finished": session.finished,
+        "final_return": session.final_returns()[share],
+        "final_eval": session.record.final_eval[share],
+        "diverged": [end for s, end in ends.items() if share.start <= s < share.stop],
+        "wall_s": session.wall_s,
+        "compile_s": session.loop.compile_s,
+        "env_steps_per_s": None if rate is None else rate / len(session.shelf.logs),
+        "physics": configuration.physics(config),
+        "device": provenance.device(),
+        "precision": precision.current(),
+        "versions": provenance.versions(),
+        "git_commit": provenance.git_commit(),
+        "run_dir": str(run_dir),
+        **{key: values[key] for key in ("run", "begun", "freeze") if values.get(key)},
+        "signal": session.stop or None,
+    }
+
+
+def written(config: DictConfig) -> dict[str, Any]:
+    """The values of config.yaml, by full keys."""
+    others = ("expert", "version", "recipe", "config_dir")
+    return flatten_keys({key: value for key, value in plain(config).items() if key not in others})
 
 
 def train(
@@ -78,7 +199,9 @@ def _begin(
     values = [member.values for member in members]
     axis, first = axis_of(values, runs), start.joined(starts)
     fits(runs)
-    _check_logger(members[0].config.get("logger"))
+    logger = one_of("logger", members[0].config.get("logger"), (None, "wandb"))
+    if logger is not None and find_spec("wandb") is None:
+        raise UsageError(f"logger=wandb: not installed; {install('wandb')}")
     with folder.claim_folders([member.config for member in members]) as folders:
         return _run(Job(runs, folders, values, axis), handled, output, first)
 
@@ -111,12 +234,6 @@ def _resume(
                 runs.append(configuration.built(config))
             refuse_edits(config, run_dir)  # also those of a process that had it until now
         return _run(Job(runs, folders, values, axis_of(values, runs)), handled, output)
-
-
-def _check_logger(name: str | None) -> None:
-    """Raise UsageError for a logger that is unknown or not installed."""
-    if one_of("logger", name, (None, "wandb")) is not None and find_spec("wandb") is None:
-        raise UsageError(f"logger=wandb: not installed; {install('wandb')}")
 
 
 def fits(runs: Sequence[Run]) -> str:
@@ -212,7 +329,7 @@ def _done(config: DictConfig, run_dir: Path) -> dict[str, Any] | None:
     if not summary["finished"] or summary["total_steps"] < config.total_steps:
         return None
     newest = run_dir / "checkpoints" / str(summary["total_steps"])
-    return summary | {"run_dir": str(run_dir)} if manifest.verify(newest) is None else None
+    return summary | {"run_dir": str(run_dir)} if checkpoint.verify(newest) is None else None
 
 
 def _progress(run: Run, visible: bool) -> Progress:

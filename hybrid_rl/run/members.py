@@ -16,8 +16,11 @@ import jax
 import jax.numpy as jnp
 from omegaconf import DictConfig, OmegaConf
 
+from hybrid_rl.envs.adapters.external import External
+from hybrid_rl.envs.adapters.robot import Outside, Robot
 from hybrid_rl.errors import UsageError
-from hybrid_rl.outside.loops import loop_of
+from hybrid_rl.outside.host_loop import HostLoop
+from hybrid_rl.outside.robot_loop import RobotLoop
 from hybrid_rl.run import folder, start
 from hybrid_rl.run.logs.records import flatten_keys
 from hybrid_rl.settings import build as configuration
@@ -25,7 +28,8 @@ from hybrid_rl.settings import words as overrides
 from hybrid_rl.settings.build import Run
 from hybrid_rl.settings.complete import LACKING, refusal, select, source
 from hybrid_rl.settings.words import raw_values
-from hybrid_rl.training.axis import Axis, DifferError
+from hybrid_rl.training.agent import Agent
+from hybrid_rl.training.loop import Axis, DifferError, Loop
 
 
 @dataclass(frozen=True)
@@ -122,3 +126,23 @@ def joined(folders: Sequence[Path], summaries: Sequence[dict[str, Any]]) -> dict
     same = ("task", "algo", "total_steps", "finished", "wall_s", "compile_s", "signal")
     kept = {key: summaries[0][key] for key in same}
     return kept | lists | {"run_dir": str(folders[0].parent), "runs": [*summaries]}
+
+
+def loop_of(
+    agent: Agent,
+    seeds: tuple[int, ...],
+    stride: int,
+    folder: Path = Path(),
+    axis: Axis | None = None,
+) -> Loop:
+    """On the device; on the host where its environment is there; or on a robot.
+
+    folder: of the run, in which the files of a robot are. axis: of `Loop`.
+    """
+    env = agent.episode.env
+    if isinstance(env, Robot):
+        return RobotLoop(agent, seeds, stride, folder=folder / "robot")
+    if isinstance(env, Outside):
+        raise UsageError("task=online: is for a loop of yours; use hybrid_rl.OnlineLearner")
+    kind = HostLoop if isinstance(env, External) else Loop
+    return kind(agent, seeds, stride, axis=Axis() if axis is None else axis)

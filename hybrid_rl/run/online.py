@@ -33,8 +33,7 @@ from hybrid_rl.outside.learner import RowLearner, RowLoop
 from hybrid_rl.outside.row_log import row_type
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.checkpoints.store import Record, Shelf
-from hybrid_rl.run.job import written
-from hybrid_rl.run.launch import fits, refuse_edits
+from hybrid_rl.run.launch import fits, refuse_edits, written
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings.values import check

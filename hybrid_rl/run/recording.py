@@ -77,9 +77,6 @@ def save_policy(
 
     seed: of the learner; None: the first. command: how it was trained. models: also the parameters
     to plan with.
-
-    Raises:
-        UsageError: for a run that has no such learner, policy or models.
     """
     run = load(folder)
     seed = run.seeds[0] if seed is None else seed

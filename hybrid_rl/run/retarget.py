@@ -28,11 +28,8 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
-from hydra import compose, initialize_config_dir
-from hydra.errors import HydraException
 from jax import Array
 from omegaconf import DictConfig, OmegaConf, open_dict
-from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl.envs.adapters.robot import Outside, Robot
 from hybrid_rl.envs.adapters.unstepped import ALONE
@@ -43,8 +40,7 @@ from hybrid_rl.protocols.contract import has_users
 from hybrid_rl.run.saved import Trained, load_named
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings.complete import LACKING, complete, refusal, select
-from hybrid_rl.settings.compose import explain
-from hybrid_rl.settings.groups import CONF, search_path
+from hybrid_rl.settings.groups import search_path
 from hybrid_rl.settings.words import forced, raw_values, value_of
 from hybrid_rl.training.contract import check_acting
 from hybrid_rl.training.episode import Episode
@@ -224,11 +220,9 @@ def _composed(overrides: Sequence[str], config_dir: str | Path | None) -> DictCo
     words = [f"controller@{text}" if text.split("=")[0] in PLANNERS else text for text in overrides]
     words += [search_path(config_dir)] if config_dir else []
     try:
-        with configuration.COMPOSING, initialize_config_dir(str(CONF), version_base="1.3"):
-            found: Any = compose("retarget", forced(words, {*GROUPS, "controller"}))
-    except (HydraException, OmegaConfBaseException, UsageError) as error:
-        line = str(error) if isinstance(error, UsageError) else explain(error)
-        raise UsageError(re.sub(r"^controller(@planner)?=", "planner=", line)) from error
+        found: Any = configuration.composed("retarget", forced(words, {*GROUPS, "controller"}))
+    except UsageError as error:
+        raise UsageError(re.sub(r"^controller(@planner)?=", "planner=", str(error))) from error
     return OmegaConf.create({**dict.fromkeys(configuration.PAID), **found})
 
 

@@ -113,10 +113,6 @@ def load(folder: Path | str, key: str = "run") -> Trained:
     """The learners of the run in `folder`, at its newest sound checkpoint.
 
     A line is printed for each checkpoint that is skipped. key: the argument that named the folder.
-
-    Raises:
-        UsageError: if `folder` holds no run, a damaged configuration, or no checkpoint.
-        CheckpointError: if none of its checkpoints is sound.
     """
     folder = Path(folder)
     config = run_folder.read_trained(folder, key)
@@ -156,10 +152,6 @@ def restore(folder: Path, run: Run, part: str = "learners") -> tuple[int, AgentS
     """(step, state [S, ...], notes) of the newest sound checkpoint of `run` in `folder`.
 
     part: the field of the state that is read; the others are None.
-
-    Raises:
-        CheckpointError: if none is sound.
-        MisfitError: if it is of another run.
     """
     return read_part(folder / "checkpoints", run.agent, run.seeds, part)
 

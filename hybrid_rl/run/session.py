@@ -3,10 +3,10 @@
 A row of means is written at the multiples of `log_every`, `eval_every` and `checkpoint_every`. One
 call of the compiled program takes a second or two, and a run can stop between two calls: its
 checkpoint holds the metrics since the last row, so a resumed run logs the same rows as an
-uninterrupted one.
+uninterrupted one. A learner that reaches NaN or infinity ends; the others of its program continue.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from time import monotonic, perf_counter
 from typing import Any
@@ -17,10 +17,9 @@ import numpy as np
 
 from hybrid_rl.errors import DivergenceError
 from hybrid_rl.protocols import Controller
-from hybrid_rl.run import divergence
-from hybrid_rl.run.checkpoints.store import Record, Shelf
+from hybrid_rl.run.checkpoints.store import End, Record, Shelf
 from hybrid_rl.run.evaluations import EVALUATED, Evaluations
-from hybrid_rl.run.logs import rows
+from hybrid_rl.run.logs import records
 from hybrid_rl.run.logs.progress import Progress
 from hybrid_rl.run.logs.records import Row
 from hybrid_rl.run.machine import memory, provenance
@@ -44,7 +43,7 @@ class Session:
     began: float = field(default_factory=monotonic)
     stop: int | None = None  # the signal that asked for an end; 0: the program did
     saved: tuple[int, bool] | None = None  # step and `unevaluated` of the newest checkpoint
-    gathered: rows.Metrics = field(default_factory=dict)  # since the last row of means
+    gathered: records.Metrics = field(default_factory=dict)  # since the last row of means
     recent: Speed = field(default_factory=Speed)  # since then
     pace: Pace = field(default_factory=Pace)
     program: Any = None  # compiled
@@ -160,23 +159,23 @@ class Session:
         self.record.unevaluated = bool(plan.eval_modes) and due
         self._show({}, say=False if self.record.unevaluated else None)
 
-    def _record(self, metrics: rows.Metrics, start: int) -> None:
+    def _record(self, metrics: records.Metrics, start: int) -> None:
         """Write the rows that follow from the rounds after `start`."""
         worlds = self.loop.agent.num_envs
-        infinite = rows.infinite(metrics, start, worlds)
+        infinite = records.infinite(metrics, start, worlds)
         if jax.config.jax_debug_nans:
-            infinite = divergence.unsound(self.state.learners, self.step) | infinite
+            infinite = unsound(self.state.learners, self.step) | infinite
         ended = self._end(infinite)
-        episodes = rows.episodes(metrics, start, worlds, self.record.ends)
+        episodes = records.episodes(metrics, start, worlds, self.record.ends)
         for row in episodes:
             pair = (row["step"], float(row["train/return"]))
             self.record.returns[row["learner"]].append(pair)
         self._write(sorted(episodes + ended, key=lambda row: (row["step"], row["learner"])))
         self._continue(bool(infinite))
-        self.gathered = rows.appended(self.gathered, metrics)
+        self.gathered = records.appended(self.gathered, metrics)
         if self.schedule.row_due(self.step, worlds):
             learners = len(self.loop.seeds)
-            means = rows.means(self.gathered, learners, self.step, self.record.ends)
+            means = records.means(self.gathered, learners, self.step, self.record.ends)
             self.gathered = {}
             perf = {"perf/compile_s": self.loop.compile_s} | self._speed(len(self.shelf.logs))
             self._write([row | perf for row in means])
@@ -217,12 +216,12 @@ class Session:
 
     def _end(self, failures: Mapping[int, tuple[int, str]]) -> list[Row]:
         """A row for each learner that diverged just now; failures: learner -> (step, quantity)."""
-        new = divergence.new_ends(self.loop, self.record.ends, failures)
+        new = new_ends(self.loop, self.record.ends, failures)
         self.record.ends |= new
         for s, end in new.items():
             self.record.final_eval[s] = None
             if self.left:  # else the error names it
-                self.progress.note(divergence.note(end))
+                self.progress.note(ended_note(end))
         return [
             {"step": end["step"], "learner": s, "diverged": end["quantity"]}
             for s, end in new.items()
@@ -236,7 +235,7 @@ class Session:
         """
         if not self.left:
             ends = list(self.record.ends.values())
-            raise DivergenceError(divergence.line(ends, 0, self.shelf.newest))
+            raise DivergenceError(failure_line(ends, 0, self.shelf.newest))
         for s in self.record.ends if repair else ():
             if s not in self._sound:
                 self._sound[s] = self.shelf.learner(s)
@@ -244,7 +243,7 @@ class Session:
 
     def _save(self) -> None:
         """Write a checkpoint."""
-        self._write(self._end(divergence.unsound(self.state.learners, self.step)))
+        self._write(self._end(unsound(self.state.learners, self.step)))
         self._continue(True)
         now = replace(self.record, wall_s=self.wall_s)
         with self.progress.doing("saving"):
@@ -270,3 +269,55 @@ class Session:
             known = values and s not in self.record.ends
             means.append(float(np.mean(values)) if known else None)
         return means
+
+
+def new_ends(
+    loop: Loop, known: Mapping[int, End], failures: Mapping[int, tuple[int, str]]
+) -> dict[int, End]:
+    """The ends, by the learner's number, that are not yet `known`.
+
+    failures: learner -> (step, quantity).
+    """
+    new: dict[int, End] = {}
+    for s, (step, quantity) in sorted(failures.items()):
+        if s not in known:
+            new[s] = {"seed": loop.seeds[s], "step": step, "quantity": quantity}
+            if numbers := loop.axis.names[s * loop.axis.count // len(loop.seeds)]:
+                new[s]["of"] = numbers  # where there are others
+    return new
+
+
+def unsound(learners: Any, step: int) -> dict[int, tuple[int, str]]:
+    """Learner -> (step, name) of a learned number [S, ...] that is not finite."""
+    failures: dict[int, tuple[int, str]] = {}
+    for path, leaf in jax.tree_util.tree_leaves_with_path(learners):
+        if jnp.issubdtype(leaf.dtype, jnp.floating):
+            numbers = np.asarray(leaf)
+            for s in np.flatnonzero(~np.isfinite(numbers.reshape(len(numbers), -1)).all(1)):
+                name = jax.tree_util.keystr(path, simple=True, separator=".")
+                failures.setdefault(int(s), (step, name))
+    return failures
+
+
+def ended_note(end: End) -> str:
+    """A line for a learner that ended while others continue."""
+    return f"{_words(end)}; it ends here, the others continue"
+
+
+def failure_line(ends: Sequence[End], left: int, checkpoint: int | None) -> str:
+    """The failure and what can be done, in one line.
+
+    left: learners that reached the end; checkpoint: the step of the newest one.
+    """
+    words = "; ".join(map(_words, ends))
+    if left:
+        return f"{words}; the others went on to the end"
+    if checkpoint is None:
+        return f"{words}; there is no checkpoint"
+    mend = "fix what fails and resume it, or begin again with a lower learning rate"
+    return f"{words}; checkpoint {checkpoint} is intact: {mend}"
+
+
+def _words(end: End) -> str:
+    who = f"seed {end['seed']}" + (f" of {end['of']}" if "of" in end else "")
+    return f"{who}, step {end['step']}: {end['quantity']} is not finite"

@@ -28,8 +28,7 @@ from hybrid_rl.settings.compose import (
     keys_of,
     settings_keys,
 )
-from hybrid_rl.settings.groups import CONF, groups, search_path
-from hybrid_rl.settings.registry import register
+from hybrid_rl.settings.groups import CONF, groups, register, search_path
 from hybrid_rl.settings.values import (
     COUNTS,
     PAID,
@@ -96,14 +95,18 @@ def compose_raw(overrides: Sequence[str], config_dir: str | Path | None = None) 
         others = [text for text in words if name(text) == "hydra.searchpath"]
         paths = ",".join(text.partition("=[")[2].rstrip("]") for text in (own, *others))
         words = [f"hydra.searchpath=[{paths}]", *(text for text in words if text not in others)]
+    return read(composed("train", words, return_hydra_config=True))
+
+
+def composed(name: str, words: list[str], **options: Any) -> DictConfig:
+    """What Hydra composes from conf/NAME.yaml and overrides; an error is one line."""
     try:
         with COMPOSING:
             known = GlobalHydra.instance().is_initialized()
             with nullcontext() if known else initialize_config_dir(str(CONF), version_base="1.3"):
-                config = compose("train", words, return_hydra_config=True)
+                return compose(name, words, **options)
     except UNCOMPOSED as error:
         raise UsageError(explain(error)) from error
-    return read(config)
 
 
 def read(config: DictConfig) -> DictConfig:

@@ -23,13 +23,9 @@ class Mixture:
 
     def log_density(self, params: Params, s: Array) -> Array:
         """log p [] at s [v]; the last entry of a shorter mean is repeated."""
-        means = jnp.stack([_extended(jnp.array(mean), len(s)) for mean in self.means])
+        more = (jnp.pad(jnp.array(m), (0, len(s) - len(m)), mode="edge") for m in self.means)
+        means = jnp.stack([*more])
         stds = jnp.array(self.stds)
         each = -0.5 * jnp.sum((s[None] - means) ** 2, -1) / stds**2 - len(s) * jnp.log(stds)
         weights = jnp.array(self.weights) / sum(self.weights)
         return jax.nn.logsumexp(each, b=weights) - 0.5 * len(s) * jnp.log(2 * jnp.pi)
-
-
-def _extended(mean: Array, size: int) -> Array:
-    """A mean of `size` entries: the last one is repeated."""
-    return jnp.pad(mean, (0, size - len(mean)), mode="edge")

@@ -30,13 +30,7 @@ def needs_world(controller: Any) -> bool:
 
 
 def check_members(agent: Any) -> None:
-    """Check that controller and learners have the methods and the fields of their protocols.
-
-    Raises:
-        PartError: in one line, for what is missing or has another form.
-        ValueError: for two learners of one field of `Params`, or demonstrations whose rewards are
-            not those of the run.
-    """
+    """Check that controller and learners have the methods and the fields of their protocols."""
     if agent.replay.num_demonstrated(agent.num_envs):
         agent.episode.check_demonstrations()
     Contract(agent.controller, Controller, agent.spec).check_members()
@@ -57,12 +51,7 @@ def check_members(agent: Any) -> None:
 
 
 def check(agent: Any, controllers: Iterable[Any]) -> None:
-    """Check the parts of an Agent, and the controllers that act with what it learns.
-
-    Raises:
-        PartError: in one line: the file and line, what a method gives, and what it must give.
-        ValueError: for a part whose parameters no learner gives, or gives in another form.
-    """
+    """Check the parts of an Agent, and the controllers that act with what it learns."""
     controllers = list({id(each): each for each in controllers}.values())  # full may be policy
     whole = [*controllers, *agent.learners.values()]
     for of in [*_contracts(whole, agent.seen)]:
@@ -141,7 +130,8 @@ def _contracts(whole: Any, spec: Spec) -> Iterator[Contract]:
 def check_parameters(whole: Any, learned: Mapping[str, Any], spec: Spec) -> None:
     """Raise ValueError for a policy, model or the like that no learner trains, or another form."""
     for owner, name, part in _with_parameters(whole):
-        needs, has = _parameters(part, spec), leaves(learned.get(name))
+        needs = leaves(jax.eval_shape(lambda key, of=part: of.init(key, spec), jax.random.key(0)))
+        has = leaves(learned.get(name))
         uses = "learns with" if callable(getattr(owner, "update", None)) else "acts by"
         line = f"{name}={type(part).__name__}: {type(owner).__name__} {uses} it"
         if needs and name not in learned:
@@ -153,11 +143,6 @@ def check_parameters(whole: Any, learned: Mapping[str, Any], spec: Spec) -> None
             if needs[at] != has.get(at):
                 differ = f"{needs[at]} in it and {has.get(at)} in the learner's"
                 raise ValueError(f"{line}, but {at} is {differ}; give both the same {name}")
-
-
-def _parameters(part: Any, spec: Spec) -> dict[str, str]:
-    """Path of each parameter of a part -> its type."""
-    return leaves(jax.eval_shape(lambda key: part.init(key, spec), jax.random.key(0)))
 
 
 def _with_parameters(whole: Any) -> Iterator[tuple[Any, str, Any]]:

@@ -26,17 +26,7 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.fields import Count, FieldError, Fraction, Natural, NotNegative, part
 from hybrid_rl.protocols import Constraint, Env, Goal
 from hybrid_rl.protocols.contract import Contract
-from hybrid_rl.training.wrappers import (
-    Constrained,
-    Disturbed,
-    Late,
-    Limited,
-    Paid,
-    Randomised,
-    Repeated,
-    Sensed,
-    whole,
-)
+from hybrid_rl.training import wrappers
 from hybrid_rl.types import EnvState, Spec
 
 # Environments always compute in full precision, networks perhaps with less on an accelerator.
@@ -113,7 +103,7 @@ class Episode:
         It is whole, as actions are held back, or rounded in a world that is late by itself.
         """
         lag = self._lag / self.spec.dt
-        return whole(lag) if self.late else float(round(lag))
+        return wrappers.whole(lag) if self.late else float(round(lag))
 
     @property
     def knows_lag(self) -> bool:
@@ -128,15 +118,15 @@ class Episode:
     @property
     def world(self) -> Env:
         """The environment with everything that is around it (see `wrappers`)."""
-        env = self.env if self.randomise is None else Randomised(self.env, self.randomise)
-        env = env if self.reward is None else Paid(env, self.reward)
-        env = Limited(Repeated(env, self.action_repeat), self.steps)
-        env = env if self.constraint is None else Constrained(env, self.constraint)
-        env = Disturbed(env, self.action_noise) if self.action_noise else env
+        env = self.env if self.randomise is None else wrappers.Randomised(self.env, self.randomise)
+        env = env if self.reward is None else wrappers.Paid(env, self.reward)
+        env = wrappers.Limited(wrappers.Repeated(env, self.action_repeat), self.steps)
+        env = env if self.constraint is None else wrappers.Constrained(env, self.constraint)
+        env = wrappers.Disturbed(env, self.action_noise) if self.action_noise else env
         if self.late:
-            env = Late(env, self.delay, self.jitter, self.loss, self.lag, self.longest)
+            env = wrappers.Late(env, self.delay, self.jitter, self.loss, self.lag, self.longest)
         seen = any(self.std) or self.observe is not None
-        return Sensed(env, self.std, self.observe) if seen else env
+        return wrappers.Sensed(env, self.std, self.observe) if seen else env
 
     @property
     def spec(self) -> Spec:

@@ -14,7 +14,16 @@ from tiny import call
 from hybrid_rl import figures
 from hybrid_rl.analysis import tables
 from hybrid_rl.analysis.curves import Curve, iqm
-from hybrid_rl.analysis.learning_curves import figure, from_numbers, plot, summary, to_numbers
+from hybrid_rl.analysis.learning_curves import (
+    ACROSS,
+    DOWN,
+    figure,
+    from_numbers,
+    in_characters,
+    plot,
+    summary,
+    to_numbers,
+)
 from hybrid_rl.analysis.style import BLUE, GREEN
 from hybrid_rl.cli import command
 from hybrid_rl.errors import UsageError
@@ -205,3 +214,37 @@ def test_a_table_of_others_is_drawn_beside_the_runs(tmp_path, monkeypatch):
     ours = curve("ant", metric="eval/return")
     with pytest.raises(UsageError, match="env_name of ant, and of no other task"):
         figure(**given)
+
+
+def columns(text):
+    """The row of the star in each column, from 0 at the bottom."""
+    rows = [line.partition("|")[2].ljust(ACROSS) for line in text.splitlines() if "|" in line]
+    assert len(rows) == DOWN
+    stars = np.array([[mark == "*" for mark in row] for row in reversed(rows)])
+    assert (stars.sum(0) == 1).all()
+    return stars.argmax(0)
+
+
+def test_each_column_has_one_star_at_the_height_of_the_line():
+    x, y = [100, 300, 600], [-10.0, 1230.0, 610.0]
+    text = in_characters(x, y, "Return", "decisions")
+    rows = columns(text)
+    assert (rows[0], rows.max(), rows[-1]) == (0, DOWN - 1, (DOWN - 1) // 2)
+    top = round((ACROSS - 1) * 200 / 500)
+    assert (np.diff(rows[: top + 1]) >= 0).all()
+    assert (np.diff(rows[top + 1 :]) <= 0).all()
+    lines = text.splitlines()
+    assert lines[0] == "Return"
+    assert lines[1].startswith("1,230 |")
+    assert lines[DOWN].startswith("  -10 |")
+    assert lines[-1].split() == ["100", "600", "decisions"]
+    assert text.isascii()
+
+
+def test_limits_that_lie_close_together_have_more_digits():
+    lines = in_characters([1, 2], [-1.62, -1.48], "", "").splitlines()
+    assert (lines[1].split()[0], lines[DOWN].split()[0]) == ("-1.48", "-1.62")
+
+
+def test_a_constant_is_a_line_at_the_bottom():
+    assert (columns(in_characters([1, 2], [5.0, 5.0], "", "")) == 0).all()

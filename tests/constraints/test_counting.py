@@ -12,7 +12,7 @@ from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.data.replay import Replay
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.errors import UsageError
-from hybrid_rl.outside.loops import loop_of
+from hybrid_rl.run.members import loop_of
 from hybrid_rl.run.start import _rewritten
 from hybrid_rl.settings import build as config
 from hybrid_rl.training.episode import Episode

@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from hybrid_rl.core import analytic, riccati
+from hybrid_rl.core import riccati
 from hybrid_rl.envs.analytic.cart_double_pendulum import CartDoublePendulum
 from hybrid_rl.envs.analytic.no_dynamics import NoDynamics
 from hybrid_rl.envs.analytic.point_mass import PointMass
@@ -34,7 +34,7 @@ def test_value_is_the_cost_of_the_regulator() -> None:
 def test_the_room_of_an_unstable_system_is_the_largest_safe_correction() -> None:
     """The worst course of corrections uses all of the action, and nothing more."""
     policy = Regulator(CartDoublePendulum())
-    A, B = analytic.at_equilibrium(policy.world)
+    A, B = riccati.at_equilibrium(policy.world)
     K, room = policy.solve()[0], policy.room()
     assert room is not None
     e, answers = B, []
@@ -58,7 +58,7 @@ def test_a_stable_system_needs_no_room(world: Any) -> None:
 
 def test_cart_double_pendulum_has_the_poles_of_its_source() -> None:
     """Bogdanov 2004: +4.10 and +10.39 [1/s], and their mirror images."""
-    A = analytic.at_equilibrium(CartDoublePendulum())[0]
+    A = riccati.at_equilibrium(CartDoublePendulum())[0]
     poles = np.sort(np.log(np.linalg.eigvals(A).real) / 0.01)
     np.testing.assert_allclose(poles, [-10.39, -4.10, 0, 0, 4.10, 10.39], atol=0.01)
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from worlds import placed
 
+from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.kinematics import (
     Chain,
     damped_inverse,
@@ -16,9 +17,11 @@ from hybrid_rl.envs.mujoco.kinematics import (
     quat_multiply,
     rotate,
     rotate_towards,
+    torques,
 )
 from hybrid_rl.envs.panda_stack import READY
 from hybrid_rl.envs.sawyer_push import HOME
+from hybrid_rl.envs.sawyer_torque import asset
 
 SAWYER, PANDA = "sawyer_push.xml", "panda_stack.xml"
 POSES = [  # asset, site, joints [rad], position of the site [m]; from the makers' tables
@@ -103,3 +106,16 @@ def test_rotations():
     small = jnp.array([1.0, 0.005, -0.01, 0.002])  # 0.01, -0.02, 0.004 rad
     target = quat_multiply(small / jnp.linalg.norm(small), r)
     np.testing.assert_allclose(rotate_towards(r, -target, 5.0), [0.05, -0.1, 0.02], atol=1e-4)
+
+
+@pytest.mark.parametrize(("damping", "payload"), [("none", 0.0), ("maker", 1.5)])
+def test_inverse_dynamics_agree_with_mujoco(damping, payload):
+    name, rng = asset(damping, payload), np.random.default_rng(0)
+    model = mjcf.load(name)
+    data, inverse = mujoco.MjData(model), jax.jit(lambda *x: torques(name, *x))
+    for _ in range(5):
+        x = [scale * rng.normal(size=7).astype(np.float32) for scale in (0.7, 2, 10)]
+        data.qpos[:], data.qvel[:], data.qacc[:] = x
+        mujoco.mj_inverse(model, data)
+        assert not data.nefc  # within the joints' ranges
+        np.testing.assert_allclose(inverse(*x), data.qfrc_inverse, atol=1e-4)

@@ -4,7 +4,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from hybrid_rl.envs.analytic.hills import phi
+from hybrid_rl.envs.analytic.state import phi
 
 
 def test_the_highest_hill_of_three_is_one() -> None:

@@ -4,7 +4,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from hybrid_rl.envs.adapters.packed import pack, unpack
+from hybrid_rl.envs.adapters.gymnasium import pack, unpack
 from hybrid_rl.envs.analytic.two_link import TwoLink
 
 

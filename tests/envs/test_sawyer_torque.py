@@ -10,7 +10,7 @@ import pytest
 from scipy.linalg import null_space
 from worlds import placed
 
-from hybrid_rl.envs import sawyer_reference
+from hybrid_rl.envs import sawyer_torque
 from hybrid_rl.envs.experts.tracking import ComputedTorque, JointPD
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.sawyer_torque import SawyerTorque, asset
@@ -35,7 +35,7 @@ def _tip(q):
 
 
 def test_the_reference_follows_the_path_of_the_thesis_near_the_neutral_pose():
-    table = sawyer_reference.table(2, DT)
+    table = sawyer_torque.table(2, DT)
     on_path = table[BLEND:-1]
     t = DT * np.arange(len(on_path))
     np.testing.assert_allclose(on_path[:, 14:], _thesis(t), atol=1e-9)
@@ -51,13 +51,13 @@ def test_the_reference_follows_the_path_of_the_thesis_near_the_neutral_pose():
 
 
 def test_the_rates_of_the_reference_are_its_derivative():
-    table = sawyer_reference.table(2, DT)[:-1]
+    table = sawyer_torque.table(2, DT)[:-1]
     q, rate = table[:, :7], table[:, 7:14]
     slope = (q[2:] - q[:-2]) / (2 * DT)
     ends = np.abs(np.arange(1, len(q) - 1) - BLEND) < 2  # its third derivative jumps there
     np.testing.assert_allclose(rate[1:-1][~ends], slope[~ends], atol=2e-3)
     assert np.abs(np.diff(rate, axis=0)).max() < 3.2 * DT  # [rad/s^2]
-    fine = sawyer_reference.joints(np.array([0.999, 1.0, 1.001]))
+    fine = sawyer_torque.joints(np.array([0.999, 1.0, 1.001]))
     np.testing.assert_allclose(fine[1][1], (fine[0][2] - fine[0][0]) / 2e-3, atol=1e-5)
     np.testing.assert_allclose(fine[2][1], (fine[1][2] - fine[1][0]) / 2e-3, atol=1e-4)
     np.testing.assert_array_equal(table[0, :14], [*NEUTRAL, *np.zeros(7)])
@@ -85,7 +85,7 @@ def _play(kind, payload=0.0, learn=5, decisions=265, **gains):
 def test_the_reference_of_the_next_decision_comes_true():
     obs, error = _play(None)
     np.testing.assert_array_equal(obs[1:, 14:28], obs[:-1, 28:])
-    rows = sawyer_reference.table(2, DT)[:, :14]
+    rows = sawyer_torque.table(2, DT)[:, :14]
     np.testing.assert_allclose(obs[4:, 14:28], rows[: len(obs) - 4], atol=1e-6)
     np.testing.assert_array_equal(obs[:4, 14:28], np.tile(obs[4, 14:28], (4, 1)))
     tips = [np.linalg.norm(_tip(o[:7])[0] - _tip(o[14:21])[0]) for o in obs[::40]]

@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 from toys import begun
 
-from hybrid_rl.core.teaching import Queried
 from hybrid_rl.errors import UsageError
-from hybrid_rl.learners.dagger import DAgger, DAggerState
+from hybrid_rl.learners.dagger import DAgger, DAggerState, Queried
 from hybrid_rl.models.exact import Exact
 from hybrid_rl.policies.deterministic import Deterministic
 from hybrid_rl.settings import build as config

@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from hybrid_rl.learners.model import held_out
+from hybrid_rl.learners.model import flags, only, without
 from hybrid_rl.types import Batch
 
 FULL = 2**32
@@ -31,7 +31,7 @@ def test_the_hash_is_the_one_of_the_definition() -> None:
         bits = struct.unpack("<5I", row.tobytes())
         h = mix(sum(mix((b + i * 0x9E3779B9) % FULL) for i, b in enumerate(bits)) % FULL)
         want.append(h < 0.3 * FULL)
-    got = held_out.flags(jnp.asarray(obs), jnp.asarray(action), 0.3)
+    got = flags(jnp.asarray(obs), jnp.asarray(action), 0.3)
     np.testing.assert_array_equal(got, want)
 
 
@@ -40,7 +40,7 @@ def test_the_share_is_held_out_of_any_grid(step: float) -> None:
     """Of 20,000 decisions on a grid, within four standard deviations of the binomial law."""
     grid = step * jnp.arange(20_000.0)
     for share in (0.05, 0.5):
-        held = held_out.flags(grid[:, None], jnp.zeros((20_000, 1)), share)
+        held = flags(grid[:, None], jnp.zeros((20_000, 1)), share)
         assert abs(held.mean() - share) < 4 * np.sqrt(share * (1 - share) / 20_000)
 
 
@@ -49,7 +49,7 @@ def test_rows_are_replaced_and_selected() -> None:
     rows = jnp.arange(6.0)
     batch = Batch(rows[:, None], rows[:, None], rows, rows, rows, rows[:, None])
     held = jnp.array([True, False, True, True, False, True])
-    assert held_out.without(batch, held).reward.tolist() == [4, 1, 1, 1, 4, 4]
-    chosen, real = jax.jit(held_out.only, static_argnums=2)(batch, held, 5)
+    assert without(batch, held).reward.tolist() == [4, 1, 1, 1, 4, 4]
+    chosen, real = jax.jit(only, static_argnums=2)(batch, held, 5)
     assert chosen.reward[real].tolist() == [0, 2, 3, 5]
-    assert held_out.only(batch, held, 2)[0].reward.tolist() == [0, 2]
+    assert only(batch, held, 2)[0].reward.tolist() == [0, 2]

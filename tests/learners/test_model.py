@@ -10,7 +10,7 @@ import pytest
 from jax import Array
 from toys import begun, learned
 
-from hybrid_rl.learners.model import ModelLearner, held_out
+from hybrid_rl.learners.model import ModelLearner, flags
 from hybrid_rl.models.ensemble import Ensemble
 from hybrid_rl.models.gaussian import Gaussian
 from hybrid_rl.objectives.predicted_return import PredictedReturn
@@ -71,9 +71,9 @@ def test_reward_discount_learns_a_value() -> None:
     reward = RewardNetwork(hidden=(32,))
     learner = ModelLearner(Gaussian(hidden=(8,)), reward, reward_discount=0.8)
     at = (jnp.zeros(2), jnp.zeros(1), jnp.zeros(2))
-    going = trained(learner, 4000, endless).reward
+    going = trained(learner, 2000, endless).reward
     assert float(reward.outcome(Params(reward=going), *at)[0]) == pytest.approx(5, abs=0.4)
-    ended = trained(learner, 2000, lambda key: endless(key, 1.0)).reward
+    ended = trained(learner, 1000, lambda key: endless(key, 1.0)).reward
     assert float(reward.outcome(Params(reward=ended), *at)[0]) == pytest.approx(1, abs=0.1)
 
 
@@ -117,7 +117,7 @@ def test_mean_and_standard_deviation_are_learned() -> None:
     """Without a reward; both as functions of the state, in its units."""
     model = Gaussian(hidden=(64,), activation="silu", state_noise=True)
     learner = ModelLearner(model, updates=1)
-    state, metrics = learned(learner, SPEC, draw_noisy, 4000)
+    state, metrics = learned(learner, SPEC, draw_noisy, 2000)
     assert (learner.owns, list(learner.params(state))) == (("model",), ["model"])
     params, loss = Params(**learner.params(state)), np.asarray(metrics["model/loss"])
     assert loss[-100:].mean() < loss[:100].mean() - 0.5
@@ -159,7 +159,7 @@ INIT, UPDATE = jax.jit(lambda key: HELD.init(key, SPEC)), jax.jit(HELD.update)
 def test_held_out_decisions_are_not_learned_from() -> None:
     """Other rewards and outcomes of them leave all but their loss unchanged, to the bit."""
     batch, key = draw(jax.random.key(2), 3 * 128), jax.random.key(0)
-    held = held_out.flags(batch.obs, batch.action, 0.2)
+    held = flags(batch.obs, batch.action, 0.2)
     assert 40 < int(held.sum()) < 120
     far = batch._replace(
         reward=batch.reward + 5 * held, next_obs=batch.next_obs + 9.0 * held[:, None]
@@ -187,7 +187,7 @@ def test_held_out_losses_are_a_running_mean_that_ranks_the_members() -> None:
     for n in range(1, 4):
         batch = draw(jax.random.key(n), 3 * 128)
         state, metrics = UPDATE(state, Params(), batch, jax.random.key(0))
-        held = np.flatnonzero(held_out.flags(batch.obs, batch.action, 0.2))[: round(0.2 * 384)]
+        held = np.flatnonzero(flags(batch.obs, batch.action, 0.2))[: round(0.2 * 384)]
         rows = [x[held] for x in (batch.obs, batch.action, batch.next_obs)]
         for i in range(3):
             own = jax.tree.map(lambda w, i=i: w[i], state.model["weights"])

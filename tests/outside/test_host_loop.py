@@ -19,8 +19,8 @@ from hybrid_rl.data.replay import unpack
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.adapters.gymnasium import GymnasiumEnv
 from hybrid_rl.outside.host_loop import HostEvaluator, HostLoop, seed_of
-from hybrid_rl.outside.loops import loop_of
 from hybrid_rl.run import exported
+from hybrid_rl.run.members import loop_of
 from hybrid_rl.run.saved import Trained
 from hybrid_rl.settings import build as config
 from hybrid_rl.training.episode import Episode

@@ -15,9 +15,9 @@ from hybrid_rl.files.atomic import own_folder
 from hybrid_rl.outside import lag as lags
 from hybrid_rl.outside.lag import acted, known_lag
 from hybrid_rl.outside.learner import transition
-from hybrid_rl.outside.loops import loop_of
 from hybrid_rl.outside.robot_loop import RobotProgram
 from hybrid_rl.outside.robot_process import RobotProcess
+from hybrid_rl.run.members import loop_of
 from hybrid_rl.settings import build as config
 
 

@@ -16,8 +16,8 @@ from test_host_loop import ROUNDS, STEPS, agents
 from hybrid_rl.errors import WorldError
 from hybrid_rl.learners.return_scale import ReturnScale
 from hybrid_rl.outside import sending
-from hybrid_rl.outside.loops import loop_of
 from hybrid_rl.outside.sending import mailbox, send
+from hybrid_rl.run.members import loop_of
 from hybrid_rl.settings import build as config
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import REPLICATED, SEEDS

@@ -14,9 +14,9 @@ from hybrid_rl import evaluate, export
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.run import session
-from hybrid_rl.run.checkpoints import checkpoint, manifest
+from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.evaluations import Evaluations
-from hybrid_rl.run.logs import rows
+from hybrid_rl.run.logs import records
 from hybrid_rl.run.machine import memory
 
 pytestmark = pytest.mark.turns(3)
@@ -46,7 +46,7 @@ def test_a_damaged_checkpoint_is_passed_over(copied, capfd):
     assert "checkpoint 600 is skipped" in printed.out
     assert "continuing from step 500" in printed.out
     assert printed.err == ""
-    assert manifest.verify(copied / "checkpoints" / "600") is None
+    assert checkpoint.verify(copied / "checkpoints" / "600") is None
 
 
 def test_without_a_sound_checkpoint_nothing_is_done(copied, capfd):
@@ -110,7 +110,7 @@ def test_a_learner_that_breaks_is_named(copied, monkeypatch, capfd):
             self.state = self.state.replace(learners=jax.tree.unflatten(form, leaves))
 
     monkeypatch.setattr(session.Session, "_advance", spoilt)
-    monkeypatch.setattr(rows, "infinite", lambda *_: {})
+    monkeypatch.setattr(records, "infinite", lambda *_: {})
     monkeypatch.setattr(Evaluations, "__call__", lambda *_: [{"eval/return": 0.0}])
     printed = refusal(capfd, f"resume={copied}", "total_steps=700", code=1)
     assert printed.startswith("hybrid_rl: seed 0, step 700: policy.")

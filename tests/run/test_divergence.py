@@ -5,9 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from hybrid_rl.run import divergence
-from hybrid_rl.run.logs import rows
-from hybrid_rl.training.axis import Axis
+from hybrid_rl.run import session
+from hybrid_rl.run.logs import records
+from hybrid_rl.training.loop import Axis
 
 WORLDS = 2
 
@@ -26,7 +26,7 @@ def test_what_failed_first_or_acted_is_to_blame(infinite, step, quantity):
     for name, at in infinite.items():
         metrics[name][at:] = np.inf
     loop = SimpleNamespace(seeds=(3,), axis=Axis())
-    ends = [*divergence.new_ends(loop, {}, rows.infinite(metrics, 0, WORLDS)).values()]
+    ends = [*session.new_ends(loop, {}, records.infinite(metrics, 0, WORLDS)).values()]
     line = f"seed 3, step {step}: {quantity} is not finite"
-    assert divergence.line(ends, 0, None) == f"{line}; there is no checkpoint"
-    assert f"{line}; checkpoint 4 is intact: fix what" in divergence.line(ends, 0, 4)
+    assert session.failure_line(ends, 0, None) == f"{line}; there is no checkpoint"
+    assert f"{line}; checkpoint 4 is intact: fix what" in session.failure_line(ends, 0, 4)

@@ -2,7 +2,6 @@
 
 import json
 import shutil
-import signal
 import time
 
 import numpy as np
@@ -34,27 +33,17 @@ def halves(tmp_path_factory):
     return folders
 
 
-def stopped(folder, by, *overrides):
-    """Exit code of a run that fault `by` stops after its first checkpoint."""
-    process = interrupt.start([*TINY, *overrides, f"run_dir={folder}"])
+def test_a_stopped_run_goes_on_bit_for_bit(whole, tmp_path):
+    """By two signals at once, after its first checkpoint."""
+    folder = tmp_path / "run"
+    process = interrupt.start([*TINY, *HYBRID, f"run_dir={folder}"])
     while interrupt.newest(folder) is None and process.poll() is None:
         time.sleep(0.002)
-    return interrupt.stop(process, interrupt.FAULTS[by], folder)
-
-
-@pytest.mark.parametrize(
-    ("by", "code"),
-    [("SIGINT and SIGTERM", {130, 143}), ("SIGKILL", {-signal.SIGKILL})],
-)
-def test_a_stopped_run_goes_on_bit_for_bit(whole, tmp_path, by, code):
-    folder = tmp_path / "run"
-    assert stopped(folder, by, *HYBRID) in code
-    reached = interrupt.newest(folder)
-    assert 0 < reached < 600
-    if by == "SIGINT and SIGTERM":
-        summary = summary_of(folder)
-        assert not summary["finished"]
-        assert summary["total_steps"] == reached == interrupt.rows(folder)[-1]["step"]
+    both = interrupt.FAULTS["SIGINT and SIGTERM"]
+    assert interrupt.stop(process, both, folder) in (130, 143)
+    reached, summary = interrupt.newest(folder), summary_of(folder)
+    assert not summary["finished"]
+    assert 0 < summary["total_steps"] == reached == interrupt.rows(folder)[-1]["step"] < 600
     assert call_train(f"resume={folder}") == 0
     assert interrupt.difference(folder, whole) == ""
     summary = summary_of(folder)
@@ -63,10 +52,10 @@ def test_a_stopped_run_goes_on_bit_for_bit(whole, tmp_path, by, code):
 
 
 def test_native_physics_goes_on_bit_for_bit(tmp_path):
-    """Stopped anywhere, also before there is a checkpoint."""
+    """Killed anywhere, also before there is a checkpoint."""
     run(tmp_path / "whole", *NATIVE)
-    line = [*TINY, *NATIVE]
-    done = interrupt.trial(line, tmp_path / "whole", tmp_path / "run", stops=1, within=8.0)
+    folders, kill = (tmp_path / "whole", tmp_path / "run"), interrupt.FAULTS["SIGKILL"]
+    done = interrupt.trial([*TINY, *NATIVE], *folders, stops=1, within=2.0, faults={"kill": kill})
     assert done.difference == ""
     assert interrupt.line(1, done).startswith("    1  same  ")
 

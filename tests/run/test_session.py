@@ -13,9 +13,9 @@ from tiny import TINY, call_train, finished, rows_of, run, summary_of
 
 from hybrid_rl.errors import DivergenceError
 from hybrid_rl.run import schedule, session
-from hybrid_rl.run.checkpoints import checkpoint, manifest
+from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.evaluations import Evaluations
-from hybrid_rl.run.logs import rows
+from hybrid_rl.run.logs import records
 from hybrid_rl.run.schedule import Pace, Schedule, Speed
 from hybrid_rl.run.session import Session
 from hybrid_rl.settings.words import quoted
@@ -103,7 +103,7 @@ def test_metrics_in_parts_are_the_metrics_as_one():
     values = np.random.default_rng(0).normal(size=(50, 3)).astype(np.float32)
     got = {}
     for cut in np.split(values, [7, 8, 31]):
-        got = rows.appended(got, {"b": cut, "a": -cut, "episode/done": cut})
+        got = records.appended(got, {"b": cut, "a": -cut, "episode/done": cut})
     assert list(got) == ["b", "a"]
     assert got["b"].tobytes() == values.tobytes()
 
@@ -205,7 +205,7 @@ def test_an_evaluation_that_is_not_finite_ends_the_learner(tmp_path):
         "resume it, or begin again with a lower learning rate"
     )
     assert checkpoint.steps(folder / "checkpoints") == [100, 200]
-    assert manifest.verify(folder / "checkpoints" / "200") is None
+    assert checkpoint.verify(folder / "checkpoints" / "200") is None
     assert rows_of(folder)[-1]["diverged"] == "eval/return"
     summary = summary_of(folder)
     assert (summary["finished"], summary["diverged"][0]["step"]) == (False, 300)
@@ -236,7 +236,7 @@ def test_with_debug_nans_a_run_ends_in_the_call_that_made_them_and_not_before(
     tmp_path, monkeypatch
 ):
     """Metrics that do not apply are NaN, too; here no metric tells what was learned."""
-    monkeypatch.setattr(session.rows, "infinite", lambda *_: {})
+    monkeypatch.setattr(session.records, "infinite", lambda *_: {})
     break_learner(monkeypatch, 0, 200)
     break_learner(monkeypatch, 1, 200)
     with jax.debug_nans(True), pytest.raises(DivergenceError, match="seed 0, step 250: "):

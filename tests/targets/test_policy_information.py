@@ -9,8 +9,8 @@ import pytest
 from toys import begun
 
 from hybrid_rl.core.domain import Box
-from hybrid_rl.core.teaching import Queried, empty
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
+from hybrid_rl.learners.dagger import Queried, empty
 from hybrid_rl.policies.deterministic import Clones, Deterministic
 from hybrid_rl.targets.policy_disagreement import PolicyDisagreement
 from hybrid_rl.targets.policy_information import PolicyInformation

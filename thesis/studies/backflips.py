@@ -25,9 +25,9 @@ import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.analysis.results import find
-from hybrid_rl.core import teaching
 from hybrid_rl.envs.analytic.lander import Lander
 from hybrid_rl.errors import UsageError
+from hybrid_rl.learners import dagger
 from hybrid_rl.run.folder import parse_config
 from hybrid_rl.run.saved import restore
 from hybrid_rl.settings.build import Run, build, load
@@ -201,7 +201,7 @@ def _reference() -> Params:
     actions, states = jax.jit(jax.vmap(one))(jax.random.split(flying, count))
     state = learner.init(beginning, episode.spec)
     for u, obs in zip(actions, states.obs, strict=True):
-        added = teaching.add(state.labels, obs[:-1], u, jnp.array(True))
+        added = dagger.add(state.labels, obs[:-1], u, jnp.array(True))
         state = state.replace(labels=added)
     return Params(policy=jax.jit(learner.fit)(state, LENGTHS[-1], fitting).policy)
 

@@ -8,15 +8,16 @@ import jax.numpy as jnp
 import numpy as np
 from scipy.special import digamma
 
-from hybrid_rl.analysis import rows
 from hybrid_rl.analysis.curves import band, plural
 from hybrid_rl.analysis.style import (
     GREY,
+    ROW_HEIGHT,
     blank,
     legend_below,
     legend_outside,
     line_styles,
     plain_log,
+    row_points,
 )
 from hybrid_rl.core import poses as moves
 from hybrid_rl.thesis.studies.contact_maps_picture import marks_of
@@ -77,7 +78,7 @@ def draw_poses(numbers: dict[str, Any]) -> Any:
     from matplotlib.ticker import MaxNLocator
 
     times, methods = numbers["times"], numbers["methods"]
-    height = max(2.6, 1.1 + 1.2 * rows.HEIGHT * len(methods))
+    height = max(2.6, 1.1 + 1.2 * ROW_HEIGHT * len(methods))
     figure = blank(9, height)
     errors, angles, waits = figure.subplots(1, 3, sharey=True, width_ratios=(1, 1, 1.2))
     marks = [f"{time:g} s" for time in times]
@@ -90,7 +91,7 @@ def draw_poses(numbers: dict[str, Any]) -> Any:
             for label, one in methods.items()
         }
         axes.set(title=title, xscale="log")
-        rows.points(axes, each, marks if axes is errors else ())
+        row_points(axes, each, marks if axes is errors else ())
         plain_log(axes.xaxis, narrow=True)
     each = {label: np.array(one["found"]["each"], float) for label, one in methods.items()}
     dots(waits, each, times[-1])

@@ -5,8 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.analysis.rows import name
-from hybrid_rl.analysis.style import BLACK, colours, words
+from hybrid_rl.analysis.style import BLACK, colours, name_rows, words
 
 NEVER = 1.1, 1.25, 1.4  # over the end of an axis: where it is grey, the dots there, its right edge
 
@@ -22,4 +21,4 @@ def dots(axes: Any, each: Mapping[str, Any], end: float) -> None:
         axes.plot([middle, middle], [row - 0.35, row + 0.35], color=BLACK, lw=1.5)
     axes.axvspan(NEVER[0] * end, NEVER[2] * end, color="#EEEEEE", lw=0)
     axes.set_xlim(None, NEVER[2] * end)
-    name(axes, map(words, each))
+    name_rows(axes, map(words, each))

@@ -4,8 +4,16 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.analysis import rows
-from hybrid_rl.analysis.style import blank, legend_outside, line_styles, plain_log, thousands, words
+from hybrid_rl.analysis.style import (
+    ROW_HEIGHT,
+    blank,
+    legend_outside,
+    line_styles,
+    plain_log,
+    row_points,
+    thousands,
+    words,
+)
 from hybrid_rl.thesis.studies.falls import STILL, falls, regressors, reported
 
 POINTS = 400  # of a line over time
@@ -34,11 +42,11 @@ def draw_information(numbers: dict[str, Any]) -> Any:
     from matplotlib.ticker import FuncFormatter, MaxNLocator
 
     methods = numbers["methods"]
-    figure = blank(9, 2.9 + 2.4 + rows.HEIGHT * len(methods))
-    grid: Any = figure.subplots(2, 2, height_ratios=(1 + rows.HEIGHT * len(methods), 3.2))
+    figure = blank(9, 2.9 + 2.4 + ROW_HEIGHT * len(methods))
+    grid: Any = figure.subplots(2, 2, height_ratios=(1 + ROW_HEIGHT * len(methods), 3.2))
     (traces, determinants), (errors, shares) = grid
     for axes, name in ((traces, "trace_1_s"), (determinants, "log_det_1_s")):
-        rows.points(axes, {label: [one[name]] for label, one in methods.items()})
+        row_points(axes, {label: [one[name]] for label, one in methods.items()})
         axes.xaxis.set_major_locator(MaxNLocator(4))
         axes.xaxis.set_major_formatter(FuncFormatter(thousands))
     traces.set_title("Information after 1 s, trace")
@@ -65,20 +73,20 @@ def draw_information(numbers: dict[str, Any]) -> Any:
 def draw_initial(numbers: dict[str, Any]) -> Any:
     """A row for each first K: error and share of the trials at rest at two times."""
     methods = numbers["methods"]
-    figure = blank(9, 1.3 + 1.3 * rows.HEIGHT * len(methods))
+    figure = blank(9, 1.3 + 1.3 * ROW_HEIGHT * len(methods))
     errors, shares = figure.subplots(1, 2, sharey=True)
     both = [set(one["error"]) & set(one["at_rest"]) for one in methods.values()]
     times = sorted(set.intersection(*both), key=float)
     times = list(dict.fromkeys([times[0], times[-1]]))
     marks = [f"after {time} s" for time in times]
     each = {label: [one["error"][time] for time in times] for label, one in methods.items()}
-    rows.points(errors, each, marks)
+    row_points(errors, each, marks)
     legend_outside(errors)
     each = {
         label: [100 * np.asarray(one["at_rest"][time]) for time in times]
         for label, one in methods.items()
     }
-    rows.points(shares, each)
+    row_points(shares, each)
     errors.set_title("|v|² + |w|², median and 10 to 90%")
     _error_axis(errors.xaxis, narrow=True)
     shares.set(title="Trials at rest from then on [%], Wilson's 95%", xlim=(-3, 103))

@@ -12,7 +12,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core.adjoint import roll
-from hybrid_rl.core.analytic import linearise
+from hybrid_rl.core.riccati import linearise
 from hybrid_rl.types import Path, Step
 
 SHARES = (1.0, 0.5, 0.25, 0.1, 0.03)  # of a step, tried in each iteration

@@ -17,7 +17,7 @@ from jax import Array
 
 from hybrid_rl.analysis.style import BLACK, BLUE, GREY, VERMILION, blank, legend_below, plain_log
 from hybrid_rl.core import riccati
-from hybrid_rl.core.analytic import at_equilibrium, linearise
+from hybrid_rl.core.riccati import at_equilibrium, linearise
 from hybrid_rl.envs.analytic.van_der_pol import FORCE
 from hybrid_rl.settings.build import Run, build, load
 from hybrid_rl.thesis.studies.optimal_path import cost, optimal

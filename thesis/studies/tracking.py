@@ -19,10 +19,17 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.analysis import rows
 from hybrid_rl.analysis.curves import plural
 from hybrid_rl.analysis.results import find, labels
-from hybrid_rl.analysis.style import blank, legend_below, line_styles, plain_log, words
+from hybrid_rl.analysis.style import (
+    ROW_HEIGHT,
+    blank,
+    legend_below,
+    line_styles,
+    plain_log,
+    row_points,
+    words,
+)
 from hybrid_rl.envs.mujoco.kinematics import Chain
 from hybrid_rl.errors import UsageError
 from hybrid_rl.thesis.studies.numbers import banded
@@ -186,7 +193,7 @@ def lines(numbers: dict[str, Any]) -> list[str]:
 def draw(numbers: dict[str, Any], tracks: Sequence[Track] = ()) -> Any:
     """RMSE and lag of each method, and below them the paths of the first trial, if there are."""
     methods = numbers["methods"]
-    heights = [0.9 + rows.HEIGHT * len(methods), *([4.0] if tracks else [])]
+    heights = [0.9 + ROW_HEIGHT * len(methods), *([4.0] if tracks else [])]
     figure = blank(9, sum(heights))
     parts: Any = figure.subfigures(len(heights), 1, height_ratios=heights, squeeze=False)[:, 0]
     errors, lags = parts[0].subplots(1, 2, sharey=True)
@@ -194,7 +201,7 @@ def draw(numbers: dict[str, Any], tracks: Sequence[Track] = ()) -> Any:
     for axes, name in ((errors, "rmse_mm"), (lags, "lag_ms")):
         none = [np.nan] * 3
         each = {x: [none if one[name] is None else one[name]] for x, one in methods.items()}
-        rows.points(axes, each, entries=entries)
+        row_points(axes, each, entries=entries)
     errors.set(title="RMSE [mm], IQM and 95% band", xscale="log")
     plain_log(errors.xaxis, narrow=True)
     lags.set_title("Lag [ms], + is late")

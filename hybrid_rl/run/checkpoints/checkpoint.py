@@ -6,14 +6,15 @@
                /manifest.json  every file above with its size and SHA-256
 
 A checkpoint is written to a draft, forced to the disk, then renamed, so every folder whose name is
-a number is complete. An older checkpoint of that step is FOLDER/.STEP.replaced.NONCE.tmp between
-the two renames, and counts as STEP until there is a new one. A checkpoint is renamed before it is
-deleted, so another process reads all of it or none, and then takes a newer one. Leaves are stored
-flat, by their path in the state, so the state may consist of any containers, and a part of it
-(parameters without replay memory, say) can be restored alone.
+a number is complete; one without a manifest never was. An older checkpoint of that step is
+FOLDER/.STEP.replaced.NONCE.tmp between the two renames, and counts as STEP until there is a new
+one. A checkpoint is renamed before it is deleted, so another process reads all of it or none, and
+then takes a newer one. Leaves are stored flat, by their path in the state, so the state may consist
+of any containers, and a part of it (parameters without replay memory, say) can be restored alone.
 """
 
 import contextlib
+import hashlib
 import json
 import os
 import re
@@ -24,9 +25,10 @@ from typing import Any
 
 from hybrid_rl.errors import CheckpointError
 from hybrid_rl.files.atomic import own_folder, sync
-from hybrid_rl.run.checkpoints import leaves, manifest
+from hybrid_rl.run.checkpoints import leaves
 from hybrid_rl.types import PyTree
 
+MANIFEST = "manifest.json"
 KEEP = 2  # complete checkpoints
 NAME = re.compile(r"(\d+)|\.(\d+)\.replaced\.\w+\.tmp")  # of a finished checkpoint
 
@@ -71,7 +73,7 @@ def save(folder: Path, step: int, state: PyTree, meta: dict, keep: int = KEEP) -
         for name, text in texts.items():
             (draft / name).write_text(text + "\n", encoding="utf-8")
         leaves.write(draft, arrays)
-        manifest.write(draft)
+        list_files(draft)
         path = _rename(draft, folder / str(step))
     except BaseException as problem:
         line = _refusal(folder, step, problem)
@@ -124,7 +126,7 @@ def _identity(path: Path) -> tuple[int, int, int] | None:
 
 def _attempt(path: Path, like: PyTree) -> tuple[tuple[PyTree, dict] | None, str]:
     """State and meta of the checkpoint at `path`, or None and why it has none."""
-    flaw = manifest.verify(path)
+    flaw = verify(path)
     if flaw is not None:
         return None, flaw
     try:
@@ -166,7 +168,7 @@ def _rename(draft: Path, path: Path) -> Path:
 def _prune(folder: Path, newest: int, keep: int) -> None:
     """Delete the checkpoints that the new one replaces."""
     known = steps(folder)
-    sound = [s for s in known if s <= newest and not manifest.verify(folder / str(s), False)]
+    sound = [s for s in known if s <= newest and not verify(folder / str(s), False)]
     for step in set(known) - set(sound[-keep:]):
         with contextlib.suppress(OSError):
             (folder / str(step)).rename(_hidden(folder, f"{step}.pruned"))
@@ -178,6 +180,51 @@ def _refusal(folder: Path, step: int, problem: BaseException) -> str:
     reason = " ".join(str(problem).split()) or type(problem).__name__
     if system := re.search(r"([^:]+) \[os_error_code=", reason):  # the end of TensorStore's message
         reason = system[1].strip()
-    before = [s for s in steps(folder) if not manifest.verify(folder / str(s), False)]
+    before = [s for s in steps(folder) if not verify(folder / str(s), False)]
     last = f"checkpoint {before[-1]} is intact" if before else "there is no earlier one"
     return f"checkpoint {step} in {folder} was not written: {reason}; {last}"
+
+
+def list_files(folder: Path) -> None:
+    """List all files below `folder`, then force files and folders to the disk."""
+    files = sorted(path for path in folder.rglob("*") if path.is_file())
+    listed = {
+        path.relative_to(folder).as_posix(): {"bytes": path.stat().st_size, "sha256": digest(path)}
+        for path in files
+    }
+    manifest = folder / MANIFEST
+    manifest.write_text(json.dumps({"files": listed}, indent=1) + "\n", encoding="ascii")
+    below = [path for path in folder.rglob("*") if path.is_dir()]
+    for path in [*files, manifest, *below, folder]:
+        sync(path)
+
+
+def verify(folder: Path, contents: bool = True) -> str | None:
+    """The first difference of `folder` from its manifest; None if there is none.
+
+    contents: read every byte, not only sizes.
+    """
+    try:
+        listed = json.loads((folder / MANIFEST).read_text(encoding="ascii"))["files"]
+        files = [(name, entry["bytes"], entry["sha256"]) for name, entry in listed.items()]
+    except FileNotFoundError:
+        return f"it has no {MANIFEST}, so its writing was cut off"
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError) as problem:
+        return f"its {MANIFEST} cannot be read ({type(problem).__name__})"
+    for name, size, sha256 in files:
+        try:
+            if not (folder / name).is_file():  # a pipe or a device might have no end
+                return f"{name} is missing, or no plain file"
+            if (size_now := (folder / name).stat().st_size) != size:
+                return f"{name} has {size_now} bytes instead of {size}"
+            if contents and digest(folder / name) != sha256:
+                return f"{name} has changed since it was written (SHA-256 differs)"
+        except OSError as problem:
+            return f"{name} cannot be read ({problem.strerror})"
+    return None
+
+
+def digest(path: Path) -> str:
+    """SHA-256 of a file, in hexadecimal."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -12,8 +12,7 @@ import numpy as np
 from hybrid_rl.errors import MisfitError
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.logs.log import RunLog
-from hybrid_rl.run.logs.records import Row
-from hybrid_rl.run.logs.rows import Metrics
+from hybrid_rl.run.logs.records import Metrics, Row
 from hybrid_rl.run.schedule import Speed
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.loop import Loop

@@ -8,7 +8,13 @@ the planner then sums a second time. Where an episode ended, also by its time li
 executed at x', so that the target is only the reward. Without a reward the loss is that of thesis
 eq. (6.24)-(6.25).
 
-A share `holdout` of all decisions never enters a gradient or a statistic. The model's loss on them,
+A share `holdout` of all decisions never enters a gradient or a statistic: those with
+
+    mix(sum_i mix(b_i + i g)) < share 2^32
+
+where b_i are the bits of the entries of (o, u), g = 2^32 / 1.618, and mix is the last step of
+MurmurHash3 (Appleby 2011). A decision is held out or not for a whole run and after a resume, in any
+order of the memory, and nothing is stored. The model's loss on them,
 a running mean over the updates, is logged and ranks the members of an ensemble with elites. The
 decay of weights is AdamW's (Loshchilov and Hutter 2019).
 """
@@ -25,10 +31,10 @@ from hybrid_rl.core import decay
 from hybrid_rl.core.decay import adamw
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
 from hybrid_rl.fields import Count, Discount, NotNegative, Positive, has, part
-from hybrid_rl.learners.model import held_out
 from hybrid_rl.protocols import Reward, Schedule, Trainable
 from hybrid_rl.types import Batch, Params, PyTree, Spec
 
+GOLDEN = 0x9E3779B9  # 2^32 / 1.618
 KNOWN = "has no weights to learn; give model_learner.reward=null"
 RATE = 0.01  # of the running mean of the held-out loss, per update (our choice)
 
@@ -136,8 +142,8 @@ class ModelLearner:
         """One Adam step: the model's loss on all batches, the reward's on the first."""
         whole, held = batch, None
         if state.held_out is not None:
-            held = held_out.flags(batch.obs, batch.action, self.holdout)
-            batch = held_out.without(batch, held)
+            held = flags(batch.obs, batch.action, self.holdout)
+            batch = without(batch, held)
         model = self.model.observe(state.model, batch.obs, batch.next_obs)
         reward, reward_loss = self._reward(state.reward, model, batch)
 
@@ -162,7 +168,7 @@ class ModelLearner:
         state = ModelState({**model, "weights": f}, reward, optimiser, state.held_out)
         if held is not None:
             count = max(1, round(self.holdout * len(whole.obs)))  # held out, on average
-            state = self._judged(state, *held_out.only(whole, held, count))
+            state = self._judged(state, *only(whole, held, count))
             metrics["model/held_out_loss"] = state.held_out.mean.mean()
         return state, metrics
 
@@ -206,3 +212,37 @@ class ModelLearner:
 def _weights(model: Any, reward: Any) -> tuple[Any, Any]:
     """The weights that gradient steps change."""
     return model["weights"], None if reward is None else reward["weights"]
+
+
+def flags(obs: Array, action: Array, share: float) -> Array:
+    """Which decisions are held out [B], for observations [B, o] and actions [B, m]."""
+    entries = jnp.concatenate([obs, action], 1).astype(jnp.float32)
+    bits = jax.lax.bitcast_convert_type(entries, jnp.uint32)
+    offsets = jnp.arange(bits.shape[1], dtype=jnp.uint32) * jnp.uint32(GOLDEN)
+    mixed = _mix(_mix(bits + offsets[None]).sum(1, dtype=jnp.uint32))
+    return mixed < jnp.uint32(round(share * (2**32 - 1)))
+
+
+def without(batch: Batch, held: Array) -> Batch:
+    """`batch` with each row that is held out replaced by the last row before it that is not.
+
+    Rows before the first one that is not held out become the last one that is not. If all are
+    held out, which happens with probability share^B, the last row is repeated.
+    """
+    index = jnp.arange(len(held))
+    kept = jax.lax.cummax(jnp.where(held, -1, index))
+    kept = jnp.where(kept < 0, kept[-1], kept)
+    return jax.tree.map(lambda x: x[kept], batch)
+
+
+def only(batch: Batch, held: Array, count: int) -> tuple[Batch, Array]:
+    """The first `count` rows held out, and which of them are [count]; the others are row 0."""
+    index = jnp.flatnonzero(held, size=count, fill_value=0)
+    return jax.tree.map(lambda x: x[index], batch), jnp.arange(count) < held.sum()
+
+
+def _mix(h: Array) -> Array:
+    """MurmurHash3's finaliser of uint32 [...]."""
+    h = (h ^ (h >> 16)) * jnp.uint32(0x85EBCA6B)
+    h = (h ^ (h >> 13)) * jnp.uint32(0xC2B2AE35)
+    return h ^ (h >> 16)

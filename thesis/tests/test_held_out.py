@@ -11,13 +11,15 @@ import pytest
 from tiny import call, finished
 
 from hybrid_rl import figures
-from hybrid_rl.analysis import held_out
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.errors import UsageError
 from hybrid_rl.models.gaussian import Gaussian
 from hybrid_rl.run.saved import load
+from hybrid_rl.thesis.studies import held_out
 from hybrid_rl.types import Params, Spec
+
+pytestmark = pytest.mark.turns(3)
 
 
 def test_the_error_is_that_of_numpy_for_linear_models() -> None:

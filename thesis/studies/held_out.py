@@ -16,10 +16,9 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.analysis import rows
 from hybrid_rl.analysis.curves import band, iqm
 from hybrid_rl.analysis.results import find, labels
-from hybrid_rl.analysis.style import blank, words
+from hybrid_rl.analysis.style import ROW_HEIGHT, blank, row_points, words
 from hybrid_rl.cli.arguments import whole
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.saved import Trained, load
@@ -125,12 +124,12 @@ def draw(numbers: dict[str, Any]) -> Any:
     steps = [f"{int(one['step']):,}" for one in runs.values()]
     names = [run.removesuffix(step).rstrip(" ,:") for run, step in zip(runs, steps, strict=True)]
     entries = [f"{words(name)}, {step} decisions" for name, step in zip(names, steps, strict=True)]
-    figure = blank(8, 1.0 + rows.HEIGHT * len(runs))
+    figure = blank(8, 1.0 + ROW_HEIGHT * len(runs))
     for axes, kind in zip(figure.subplots(1, 2, sharey=True), SETS, strict=True):
         for row, one in enumerate(runs.values()):
             each = one[kind]["each"]
             axes.plot(each, [row] * len(each), ".", color="#BBBBBB")
         spreads = {run: [[one[kind]["iqm"], *one[kind]["band"]]] for run, one in runs.items()}
-        rows.points(axes, spreads, entries=entries)
+        row_points(axes, spreads, entries=entries)
         axes.set(title=f"on {kind}", xlabel="held-out error")
     return figure
