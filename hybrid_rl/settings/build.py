@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
+from operator import truediv
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -52,6 +53,7 @@ READ = (  # the keys that a run reads, and with them all keys that they refer to
     *("precision", "logger", "run", "freeze"),
 )
 register(CONF)  # before Hydra composes anything
+OmegaConf.register_new_resolver("ratio", truediv, replace=True)  # ${ratio:A,B} in YAML
 SENSED = "hybrid_rl.training.wrappers.Sensed"
 COMPOSING = Lock()  # Hydra composes in one thread at a time
 
