@@ -81,12 +81,8 @@ def test_seconds_leave_evaluations_out(monkeypatch):
     for step in range(1, 3001):
         now.s += 1
         assert record.after(SimpleNamespace(num_timesteps=step))
-    assert [tuple(row.values()) for row in rows] == [
-        (1000, 1000, None),
-        (1500, 1500, 1.0),
-        (2000, 2000, None),
-        (3000, 3000, 1.0),
-    ]
+    made = [(1000, 1000, None), (1500, 1500, 1.0), (2000, 2000, None), (3000, 3000, 1.0)]
+    assert [tuple(row.values()) for row in rows] == made
 
 
 def test_the_file_has_what_peers_json_has_of_a_method():
@@ -100,15 +96,3 @@ def test_the_file_has_what_peers_json_has_of_a_method():
     rows[100].append({"step": 3000, "s": 12.0, "return": 8.0})
     assert "3000" not in compare_peers.returns(rows)
     assert compare_peers.clock({100: rows[100][:1]}) is None
-
-
-@pytest.mark.parametrize(
-    ("words", "line"),
-    [
-        (["env=Nothing-v1"], "env=Nothing-v1: "),
-        (["total_steps=400"], "total_steps=400: must be 1000 or more"),
-    ],
-)
-def test_a_wrong_argument_is_one_line(words, line, peer, tmp_path, capfd):
-    assert main(*GIVEN, f"out={tmp_path}/out.json", *words) == 2
-    assert line in only_line(capfd)

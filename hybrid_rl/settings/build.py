@@ -4,7 +4,6 @@ import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
-from operator import truediv
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -53,7 +52,7 @@ READ = (  # the keys that a run reads, and with them all keys that they refer to
     *("precision", "logger", "run", "freeze"),
 )
 register(CONF)  # before Hydra composes anything
-OmegaConf.register_new_resolver("ratio", truediv, replace=True)  # ${ratio:A,B} in YAML
+OmegaConf.register_new_resolver("ratio", lambda a, b: a / b, replace=True)  # ${ratio:A,B}
 SENSED = "hybrid_rl.training.wrappers.Sensed"
 COMPOSING = Lock()  # Hydra composes in one thread at a time
 

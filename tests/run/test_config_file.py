@@ -15,11 +15,7 @@ from hybrid_rl.cli import command
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.settings import build as config
 
-METHODS = {
-    "hybrid_stochastic": "halfcheetah",
-    "kle3": "pendulum",
-    "bc": "cartpole",
-}
+METHODS = {"hybrid_stochastic": "halfcheetah", "kle3": "pendulum", "bc": "cartpole"}
 
 
 # A run that is done.
@@ -94,10 +90,7 @@ def test_a_setting_is_named_by_its_last_names(trained):
     assert settings.word("env") == "Pendulum"
     assert settings.word("full.policy") == settings.word("learners.policy.policy")
     assert settings.number("learners.policy.batch_size") == settings.number("batch_size") == 16
-    for key, words in (
-        ("hiden", "it has policy.hidden$"),
-        ("_target_", "has several values in "),
-    ):
+    for key, words in (("hiden", "it has policy.hidden$"), ("_target_", "has several values in ")):
         with pytest.raises(config.UsageError, match=f"group={key}: .*{words}"):
             settings.word(key)
     with pytest.raises(config.UsageError, match=r"x=batch_sise: not in .*batch_size"):
