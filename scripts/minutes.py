@@ -67,7 +67,7 @@ def clock(alone: Sequence[tuple[Learner, Learner]]) -> Clock:
 
 def members(folder: Path) -> list[Learner]:
     """The learners of a method, over seconds since the command."""
-    files = {*folder.glob("*.json"), *(path.parent for path in folder.rglob("metrics.jsonl"))}
+    files = {*folder.glob("*.json"), *(path.parent for path in folder.rglob("summary.json"))}
     runs = [evaluated(path) for path in sorted(files)]
     alone = [run[0] for run in runs if len(run) == 1 and len(run[0][0].x) > 2]
     shared = [counted for run in runs if len(run) > 1 for _, counted in run]
