@@ -106,15 +106,13 @@ def test_the_summary_describes_the_run(trained):
         *("task", "algo", "seeds", "total_steps", "finished", "final_return", "wall_s"),
         *("env_steps_per_s", "physics", "device", "versions", "git_commit"),
     }
-    assert (values["task"], values["algo"], values["seeds"]) == (
-        "cartpole",
-        "hybrid_stochastic",
-        [0],
-    )
+    named = values["task"], values["algo"], values["seeds"]
+    assert named == ("cartpole", "hybrid_stochastic", [0])
     assert (values["total_steps"], values["finished"], values["physics"]) == (600, True, "native")
     last = [row["train/return"] for row in rows_of(trained) if row["step"] > 540 and len(row) == 5]
     assert values["final_return"] == [pytest.approx(np.mean(last))]
     assert 0 < values["compile_s"] < values["wall_s"]
+    assert values["before_s"] > 0
     assert {"jax", "mujoco", "python", "hybrid_rl"} <= values["versions"].keys()
 
 

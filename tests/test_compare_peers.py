@@ -82,12 +82,8 @@ def test_seconds_leave_evaluations_out(monkeypatch):
     for step in range(1, 3001):
         now.s += 1
         assert record.after(SimpleNamespace(num_timesteps=step))
-    assert [tuple(row.values()) for row in rows] == [
-        (1000, 1000, None),
-        (1500, 1500, 1.0),
-        (2000, 2000, None),
-        (3000, 3000, 1.0),
-    ]
+    made = [(1000, 1000, None), (1500, 1500, 1.0), (2000, 2000, None), (3000, 3000, 1.0)]
+    assert [tuple(row.values()) for row in rows] == made
 
 
 def test_the_file_has_what_peers_json_has_of_a_method():

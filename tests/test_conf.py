@@ -144,6 +144,15 @@ def test_how_a_hybrid_method_learns_is_one_override() -> None:
     config.build(c)
 
 
+def test_settings_quick_makes_as_many_updates_a_round_in_any_number_of_worlds() -> None:
+    for algo, worlds, count in (("hybrid_stochastic", 8, 4), ("sac", 64, 8), ("flash_sac", 64, 8)):
+        words = ["settings=quick", f"algo={algo}"]
+        assert config.load(words).num_envs == worlds
+        c = config.load([*words, "num_envs=512"])
+        each = [one for one in config.build(c).agent.learners.values() if one.data == "uniform"]
+        assert {one.updates * c.num_envs for one in each} == {count}
+
+
 def test_settings_annealed_lengthens_branches_and_lowers_rates_at_the_end() -> None:
     c = config.load(["settings=annealed"])
     learners = config.build(c).agent.learners

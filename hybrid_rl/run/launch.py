@@ -35,6 +35,7 @@ from hybrid_rl.settings.build import Run
 from hybrid_rl.settings.values import check, one_of, whole
 from hybrid_rl.settings.words import plain
 from hybrid_rl.training.loop import Axis, Loop
+from hybrid_rl.version import BEGAN
 
 OF_A_SESSION = ("resume", "total_steps", "run_dir", "version", "logger")
 OF_A_SESSION += ("compile_cache", "precision", "recipe", "config_dir")
@@ -138,6 +139,7 @@ def _summary(config: DictConfig, session: Session, run_dir: Path, share: slice) 
         "final_return": session.final_returns()[share],
         "final_eval": session.record.final_eval[share],
         "diverged": [end for s, end in ends.items() if share.start <= s < share.stop],
+        "before_s": session.began - BEGAN,  # from the command to where wall_s is 0
         "wall_s": session.wall_s,
         "compile_s": session.loop.compile_s,
         "env_steps_per_s": None if rate is None else rate / len(session.shelf.logs),

@@ -92,9 +92,8 @@ class Session:
             self.loop.agent = replace(self.loop.agent, first_update=self.step)
             notes += ["no replay memory in checkpoints: it continues, but not bit for bit"]
         self.saved = self.step, self.record.unevaluated
-        for note in (*notes, *self.loop.notes):
+        for note in (*notes, *self.loop.notes, f"continuing from step {self.step:,}"):
             self.progress.note(note)
-        self.progress.note(f"continuing from step {self.step:,}")
 
     def compile(self) -> None:
         """Compile all programs that `run` calls."""

@@ -191,9 +191,7 @@ def _rewritten(agent: Agent, memory: Any, relabelled: bool) -> Any:
 
     def one(memory: Any) -> Any:
         memory = agent.replay.interrupted(agent.replay.resized(memory), agent.spec)
-        if not relabelled:
-            return memory
-        return agent.replay.relabelled(memory, agent.spec, agent.episode)
+        return agent.replay.relabelled(memory, agent.spec, agent.episode) if relabelled else memory
 
     return each_learner(one, memory)
 

@@ -51,6 +51,7 @@ READ = (  # the keys that a run reads, and with them all keys that they refer to
     *("precision", "logger", "run", "freeze"),
 )
 register(CONF)  # before Hydra composes anything
+OmegaConf.register_new_resolver("ratio", lambda a, b: a / b, replace=True)  # ${ratio:A,B}
 SENSED = "hybrid_rl.training.wrappers.Sensed"
 COMPOSING = Lock()  # Hydra composes in one thread at a time
 

@@ -59,10 +59,8 @@ def forced(texts: Iterable[str], groups: Collection[str]) -> list[str]:
     """
 
     def written(text: str) -> str:
-        if "=" not in text or text.startswith(("~", "-")):  # an option, or a key that is left out
-            return text
-        if name(text).startswith("hydra"):
-            return text
+        if "=" not in text or text.startswith(("~", "-")) or name(text).startswith("hydra"):
+            return text  # an option, a key that is left out, or one of Hydra's
         if is_group(text, groups):
             return re.sub(r"=(null|true|false|[\d.]+)$", r'="\1"', text)
         return f"++{text.lstrip('+')}"

@@ -58,10 +58,7 @@ def test_labels_carry_units_and_thousands():
     figure = plot([curve(scale=-1)])
     figure.canvas.draw()
     (panel,) = figure.axes
-    assert (panel.get_xlabel(), panel.get_ylabel()) == (
-        "Decisions",
-        "Training return",
-    )
+    assert (panel.get_xlabel(), panel.get_ylabel()) == ("Decisions", "Training return")
     assert "200,000" in [text.get_text() for text in panel.get_xticklabels()]
     assert "\N{MINUS SIGN}1,600" in [text.get_text() for text in panel.get_yticklabels()]
     (panel,) = plot([curve(metric="sac/alpha")], x="wall_s").axes

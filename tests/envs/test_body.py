@@ -8,16 +8,7 @@ import jax.numpy as jnp
 import mujoco
 import numpy as np
 import pytest
-from worlds import (
-    DECISIONS,
-    TASKS,
-    TOUCHING,
-    actions,
-    jitted,
-    make,
-    placed,
-    rollout,
-)
+from worlds import DECISIONS, TASKS, TOUCHING, actions, jitted, make, placed, rollout
 
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.body import Body

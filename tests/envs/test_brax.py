@@ -54,9 +54,7 @@ def test_brax_trainers_run_with_the_lines_of_the_docstring(monkeypatch):
     monkeypatch.setattr(jax, "device_put_replicated", None, raising=False)  # undone at the end
     exec(textwrap.dedent(lines[0]), {"jax": jax})
     few = partial(
-        networks.make_ppo_networks,
-        policy_hidden_layer_sizes=(8,),
-        value_hidden_layer_sizes=(8,),
+        networks.make_ppo_networks, policy_hidden_layer_sizes=(8,), value_hidden_layer_sizes=(8,)
     )
     with jax.numpy_rank_promotion("allow"):
         make, params, _ = train.train(

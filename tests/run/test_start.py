@@ -170,10 +170,7 @@ def test_what_is_frozen_stays(source, warm):
     assert [row["step"] for row in rows if "eval/policy_return" in row] == [0, 150]
     assert [row["step"] for row in rows if "model/loss" in row] == [50, 100, 150]
     assert not [row for row in rows if "sac/q" in row]
-    kept, summary = (
-        OmegaConf.load(warm / "config.yaml"),
-        summary_of(warm),
-    )
+    kept, summary = (OmegaConf.load(warm / "config.yaml"), summary_of(warm))
     assert (kept.run, kept.freeze, kept.begun.step) == (str(source), ["policy"], 300)
     assert summary["run"] == str(source)
     assert summary["begun"]["remembered"] == 200

@@ -16,10 +16,8 @@ PACKAGES = ("jax", "jaxlib", "mujoco", "mujoco-mjx", "flax", "optax")
 
 def versions(packages: Iterable[str] = PACKAGES) -> dict[str, str | None]:
     """Versions of this library, Python and each package; None if it is not installed."""
-    installed: dict[str, str | None] = {
-        "hybrid_rl": __version__,
-        "python": platform.python_version(),
-    }
+    installed: dict[str, str | None] = {"hybrid_rl": __version__}
+    installed["python"] = platform.python_version()
     for name in packages:
         try:
             installed[name] = version(name)
