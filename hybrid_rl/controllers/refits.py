@@ -92,4 +92,5 @@ class RefitsController:
         if (own := self._own) is None:
             return jnp.zeros((0, *state.plan.shape))
         step = partial(self.model.step, params.model)
-        return own.imagine(params, step, state.more, x, state.plan, key).path.u
+        noise = jax.random.normal(key, (own.count, *state.plan.shape))
+        return own.imagine(params, step, state.more, x, state.plan, noise).path.u
