@@ -115,7 +115,7 @@ class Candidates:
 
 
 def coloured(noise: Array, last: Array, c: Array | float) -> Array:
-    """e_t = c e_{t-1} + (1 - c^2)^1/2 n_t [K, T, m] for white noise n [K, T, m], from e_{-1} [m]."""
+    """e_t = c e_{t-1} + (1 - c^2)^1/2 n_t [K, T, m], from e_{-1} [m], white noise n [K, T, m]."""
 
     def on(e: Array, n: Array) -> tuple[Array, Array]:
         e = c * e + jnp.sqrt(1 - c**2) * n
