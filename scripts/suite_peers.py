@@ -25,7 +25,7 @@ from hybrid_rl.tools.suite import __main__ as suite
 SUITES = Path(suite.__file__).parent
 AT = (50_000, 100_000)  # decisions
 GYMNASIUM = {"HalfCheetah", "Hopper", "Walker2d", "Ant", "Humanoid"}
-DHMBPO = {"": "main/gym/esvg", "2 updates": "utd/2", "4": "utd/4", "8": "utd/8"}
+DHMBPO = {"": "main/gym/esvg", "2 updates": "utd/2", "4 updates": "utd/4", "8 updates": "utd/8"}
 DHMBPO |= {"10 steps": "d_roll_len/10", "40 steps": "d_roll_len/40"}
 SIMBA = "DAVIAN-Robotics/SimbaV2"
 PEERS = {  # name -> repository, files, action repeat in dm_control

@@ -95,18 +95,20 @@ def best(peers: dict[str, Means], name: str, n: int) -> tuple[float, str] | None
 
 def compared(ours: Means, peers: dict[str, Means], suite: dict[str, Any], n: int) -> list[str]:
     """A row for each peer after n decisions: tasks that both have, normalised means."""
-    rows = [(0, f"| normalised mean after {n:,} decisions | tasks | theirs | ours |")]
+    rows = []
     for peer, theirs in peers.items():
         pairs = []
         for name, task in suite["tasks"].items():
             if n in theirs.get(name, {}) and n in ours.get(name, {}):
-                low, top = task.get("random", 0.0), best(peers, name, n)[0]
+                low, (top, _) = task.get("random", 0.0), best(peers, name, n)
                 pairs.append([(t[name][n] - low) / (top - low) for t in (theirs, ours)])
         if pairs:
-            its, own = np.mean(pairs, 0)
-            rows.append((len(pairs), f"| {peer} | {len(pairs)} | {its:.2f} | {own:.2f} |"))
-    first, *others = rows
-    return ["", first[1], "|---|---|---|---|", *(row for _, row in sorted(others, reverse=True))]
+            rows.append((len(pairs), *np.mean(pairs, 0), peer))
+    head = f"| normalised mean after {n:,} decisions | tasks | theirs | ours |"
+    lines = [
+        f"| {peer} | {k} | {its:.2f} | {own:.2f} |" for k, its, own, peer in sorted(rows)[::-1]
+    ]
+    return ["", head, "|---|---|---|---|", *lines] if lines else []
 
 
 def table(curves: list[Curve], peers: dict[str, Means], suite: dict[str, Any]) -> str:
