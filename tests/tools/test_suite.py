@@ -9,7 +9,7 @@ import pytest
 import yaml
 from tiny import call, only_line
 
-from hybrid_rl.settings.compose import compose_raw
+from hybrid_rl.settings.build import compose_raw
 from hybrid_rl.tools.suite import __main__ as suite
 
 TASKS = {"one": {"train": "task=pendulum", "random": -10}, "two": {"train": "task=cartpole"}}
