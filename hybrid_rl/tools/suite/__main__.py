@@ -100,7 +100,8 @@ def compared(ours: Means, peers: dict[str, Means], suite: dict[str, Any], n: int
         pairs = []
         for name, task in suite["tasks"].items():
             if n in theirs.get(name, {}) and n in ours.get(name, {}):
-                low, (top, _) = task.get("random", 0.0), best(peers, name, n)
+                low = task.get("random", 0.0)
+                top = max(t[name][n] for t in peers.values() if n in t.get(name, {}))
                 pairs.append([(t[name][n] - low) / (top - low) for t in (theirs, ours)])
         if pairs:
             rows.append((len(pairs), *np.mean(pairs, 0), peer))
