@@ -2,6 +2,7 @@
 
 import json
 import subprocess
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,9 +10,11 @@ import pytest
 import yaml
 from tiny import call, only_line
 
+from hybrid_rl.cli import command
 from hybrid_rl.settings.build import compose_raw
 from hybrid_rl.tools.suite import __main__ as suite
 
+MAIN = partial(command.run, suite.main)
 TASKS = {"one": {"train": "task=pendulum", "random": -10}, "two": {"train": "task=cartpole"}}
 
 
@@ -39,13 +42,13 @@ def test_it_begins_continues_and_leaves_out_and_writes_what_there_is(tmp_path, m
     done = SimpleNamespace(returncode=0)
     monkeypatch.setattr(subprocess, "run", lambda line, **_: lines.append(line[3:]) or done)
     given = [f"suite={file}", f"out={out}", "seeds=2", "seed=7", "train=algo=sac"]
-    assert call(suite.main, *given) == 2
+    assert call(MAIN, *given) == 2
     assert "no run of these tasks" in only_line(capfd)
     first = "task=pendulum num_envs=2 algo=sac total_steps=20 eval_every=1 checkpoint_every=2"
     assert lines[0] == [*first.split(), "seed=7", "num_seeds=2", f"run_dir={out / 'one'}"]
     written(out / "one", [(0, 20), (30, 50)], finished=True)
     written(out / "two", [(5, 5), (10, 20)], finished=False)
-    assert call(suite.main, *given, f"peers={peers}") == 0
+    assert call(MAIN, *given, f"peers={peers}") == 0
     assert lines[2:] == [[f"resume={out / 'two'}"]]
     rows = [line.split(" | ") for line in out.with_suffix(".md").read_text().splitlines()]
     assert rows[2][3:] == ["40 [30, 50]; 40; 30", "A, 90 |"]
