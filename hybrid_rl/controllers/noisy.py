@@ -4,14 +4,10 @@
     uniform  e ~ level U(-1, 1)
     ou       e' = (1 - theta dt) e + level sqrt(dt) N(0, I)       Ornstein-Uhlenbeck
     held     e ~ level N(0, I), drawn every `hold` decisions
-    bursts   u = e ~ level U(-1, 1) in place of u', held: begun `rate` times a second, for 1 / theta
-             seconds on average, both at random; u' between them
 
 share = decay^k max(1 - k / until, 0) after k decisions of the run; if it falls, 0 after training.
 The baselines of ergodic exploration (thesis section 6.3.2), the exploration of deep deterministic
-policy gradients (Lillicrap et al. 2016), and the executed noise of thesis Algorithm 2. Bursts are
-those of epsilon-z-greedy exploration (Dabney et al. 2021) in seconds: small noise, however long,
-does not leave a joint's limit against which a motor presses.
+policy gradients (Lillicrap et al. 2016), and the executed noise of thesis Algorithm 2.
 """
 
 from typing import Any, Literal, NamedTuple
@@ -33,7 +29,6 @@ class NoisyState(NamedTuple):
     count: Array  # [] decisions of the episode so far
     dt: Array  # [s] of a decision
     inner: Any
-    active: Array  # [] bool: a burst lasts
 
 
 @part
@@ -41,10 +36,9 @@ class NoisyController:
     """`controller` with noise during training, without noise in evaluation."""
 
     controller: Controller
-    kind: Literal["normal", "uniform", "ou", "held", "bursts"] = "normal"
+    kind: Literal["normal", "uniform", "ou", "held"] = "normal"
     level: NotNegative = 0.1  # [u], of ou [u / sqrt(s)]
-    theta: NotNegative = 0.15  # [1/s] of ou and bursts
-    rate: NotNegative = 0.1  # [1/s] of bursts
+    theta: NotNegative = 0.15  # [1/s] of ou
     hold: Count = 1  # [decisions] of held
     decay: Share = 1.0  # factor per decision of the run
     until: Count | None = None  # decisions of the run until the noise is 0; None: never
@@ -52,8 +46,7 @@ class NoisyController:
     def init(self, spec: Spec) -> NoisyState:
         """No noise yet."""
         none, dt = jnp.zeros((), jnp.int32), jnp.float32(spec.dt)
-        inner = self.controller.init(spec)
-        return NoisyState(jnp.zeros(spec.act), none, dt, inner, jnp.zeros((), bool))
+        return NoisyState(jnp.zeros(spec.act), none, dt, self.controller.init(spec))
 
     def act(
         self, params: Params, state: NoisyState, obs: Array, key: Array
@@ -61,18 +54,9 @@ class NoisyController:
         """Action [m], next state, metrics of the inner controller. The key is consumed."""
         acting, drawing = jax.random.split(key)
         u, inner, metrics = self.controller.act(params, state.inner, obs, acting)
-        share, active = self._share(params), state.active
-        if self.kind == "bursts":
-            drawing, changing = jax.random.split(drawing)
-            often = jnp.where(active, self.theta, share * self.rate) * state.dt
-            active = active ^ jax.random.bernoulli(changing, jnp.minimum(often, 1.0))
-            new = self.level * jax.random.uniform(drawing, u.shape, minval=-1, maxval=1)
-            e = jnp.where(active & state.active, state.e, new)
-            u = jnp.where(active, e, u)
-        else:
-            e = self._noise(state, drawing)
-            u = u + share * e
-        return jnp.clip(u, -1, 1), NoisyState(e, state.count + 1, state.dt, inner, active), metrics
+        e = self._noise(state, drawing)
+        after = NoisyState(e, state.count + 1, state.dt, inner)
+        return jnp.clip(u + self._share(params) * e, -1, 1), after, metrics
 
     def _noise(self, state: NoisyState, key: Array) -> Array:
         """The noise e [m] of this decision. The key is consumed."""

@@ -92,5 +92,4 @@ class RefitsController:
         if (own := self._own) is None:
             return jnp.zeros((0, *state.plan.shape))
         step = partial(self.model.step, params.model)
-        noise = jax.random.normal(key, (own.count, *state.plan.shape))
-        return own.imagine(params, step, state.more, x, state.plan, noise).path.u
+        return own.imagine(params, step, state.more, x, state.plan, key).path.u

@@ -7,9 +7,6 @@ policy's exploration in the data; `best` executes the candidate of the greatest 
 candidate has a finite return, the action is NaN, which ends a run in one line. With `model=world`
 candidates run through the world's states.
 
-With `held` the noise of candidates goes on from decision to decision: it begins with e, that of the
-last candidate drawn, and forgets it as exp(-t / held), so that exploration moves what is slow.
-
 An objective that is a sum over time weighs each decision of a candidate by the return from that
 decision on; any other objective weighs all of them by J (Williams et al. 2017).
 """
@@ -17,7 +14,7 @@ decision on; any other objective weighs all of them by J (Williams et al. 2017).
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from typing import Any, Literal, NamedTuple, cast
+from typing import Any, Literal, cast
 
 import jax
 import jax.numpy as jnp
@@ -25,19 +22,11 @@ from jax import Array
 
 from hybrid_rl.core import adjoint, lifting, sampling
 from hybrid_rl.core.sampling import Candidates, Kept
-from hybrid_rl.fields import Count, FieldError, NotNegative, Positive, Signed, part
+from hybrid_rl.fields import Count, FieldError, Positive, Signed, part
 from hybrid_rl.protocols import Model, Objective, Policy, Proposal
 from hybrid_rl.types import Considered, EnvState, Params, Path, Spec
 
 ToGo = Callable[[Path], Array]  # path -> S [T+1], the return from each time on
-
-
-class Begun(NamedTuple):
-    """What candidates begin with."""
-
-    carries: Any  # of the proposal
-    e: Array  # [m] noise of the last candidate drawn
-    dt: Array  # [] [s] of a decision
 
 
 @part
@@ -54,7 +43,6 @@ class SamplingController:
     normalise: bool = False
     log_density: bool = False  # the thesis' p(v) in the weight
     execute: Literal["mean", "sample", "best"] = "mean"
-    held: NotNegative = 0.0  # [s] over which drawn noise is forgotten; 0: within a decision
     rest: Signed = 0.0  # [u] initial plan, and the last action of a shifted one
     agreement_every: Count = 1  # decisions between comparisons with `policy`
 
@@ -67,8 +55,7 @@ class SamplingController:
         """The plan of `rest`, and the initial carries and memory."""
         plan = jnp.full((self.horizon, spec.act), self.rest)
         memory, carries = self.objective.init(spec), self._candidates.begin(spec)
-        begun = Begun(carries, jnp.zeros(spec.act), jnp.float32(spec.dt))
-        return Kept(plan, jnp.zeros(spec.act), memory, begun)
+        return Kept(plan, jnp.zeros(spec.act), memory, carries)
 
     @property
     def _candidates(self) -> Candidates:
@@ -88,8 +75,7 @@ class SamplingController:
         x = lifting.start(self.model, params, obs)
         to_go, memory, rolling = self._to_go(params, state, x, rolling)
         step = partial(self.model.step, params.model)
-        noise, more = self._noise(state, rolling), state.more
-        samples = self._candidates.imagine(params, step, more.carries, x, state.plan, noise)
+        samples = self._candidates.imagine(params, step, state.more, x, state.plan, rolling)
         returns = jax.vmap(to_go)(samples.path)
         w = sampling.weights(
             returns[:, :-1],
@@ -103,21 +89,15 @@ class SamplingController:
             plan = jnp.where(jnp.isfinite(S.max()), samples.path.u[jnp.argmax(S)], jnp.nan)
         action = plan[0]
         if self.execute == "sample":
-            drawn = jax.random.categorical(choosing, jnp.log(w[:, 0]))
-            action = jnp.where(jnp.isnan(action), action, samples.path.u[drawn, 0])
-            more = more._replace(e=noise[drawn, 0])
+            drawn = samples.path.u[jax.random.categorical(choosing, jnp.log(w[:, 0])), 0]
+            action = jnp.where(jnp.isnan(action), action, drawn)
         metrics = {
             "planner/effective_samples": sampling.effective_samples(w)[0],
             "planner/planned_return": w[:, 0] @ sampling.kept(w, returns[:, :-1])[:, 0],
             **self._agreement(params, x, plan, to_go),
         }
-        after = state.later(plan, action, memory, self.rest)._replace(more=more)
+        after = state.later(plan, action, memory, self.rest)
         return action, after, metrics, Considered(samples.path, jnp.argmax(w[:, 0]))
-
-    def _noise(self, state: Kept, key: Array) -> Array:
-        """The noise [K, T, m] of the candidates. The key is consumed."""
-        noise = jax.random.normal(key, (self.samples, *state.plan.shape))
-        return sampling.coloured(noise, state.more.e, jnp.exp(-state.more.dt / self.held))
 
     def _to_go(self, params: Params, state: Kept, x: Any, key: Array) -> tuple[ToGo, Any, Array]:
         """S of paths from x [n], the objective's memory, and a key for other uses."""
@@ -153,4 +133,4 @@ class SamplingController:
 
     def greedy(self) -> "SamplingController":
         """The controller that executes the weighted mean, or the best candidate."""
-        return self if self.execute == "best" else replace(self, execute="mean", held=0.0)
+        return self if self.execute == "best" else replace(self, execute="mean")

@@ -96,10 +96,10 @@ class Candidates:
         return [jax.vmap(partial(part.init, spec))(jnp.asarray(q)) for part, q in self.parts]
 
     def imagine(
-        self, params: Params, step: Step, carries: Any, x: Any, plan: Array, noise: Array
+        self, params: Params, step: Step, carries: Any, x: Any, plan: Array, key: Array
     ) -> Samples:
-        """Their paths in the model `step` from x [n], around plan [T, m], for noise [K, T, m]."""
-        noise = jnp.split(noise, self.ends)
+        """Their paths in the model `step` from x [n], around plan [T, m]. The key is consumed."""
+        noise = jnp.split(jax.random.normal(key, (self.count, *plan.shape)), self.ends)
         shaped = [jax.vmap(part.shaped)(e) for (part, _), e in zip(self.parts, noise, strict=True)]
 
         def propose(carries: Any, x: Any, a: Array, noise: Any) -> tuple[Array, Array, Any]:
@@ -112,16 +112,6 @@ class Candidates:
             return jnp.concatenate(v), jnp.concatenate(log_prob), list(carries)
 
         return imagine(step, propose, carries, repeat(x, self.count), plan, shaped)
-
-
-def coloured(noise: Array, last: Array, c: Array | float) -> Array:
-    """e_t = c e_{t-1} + (1 - c^2)^1/2 n_t [K, T, m], from e_{-1} [m], white noise n [K, T, m]."""
-
-    def on(e: Array, n: Array) -> tuple[Array, Array]:
-        e = c * e + jnp.sqrt(1 - c**2) * n
-        return e, e
-
-    return _swapped(jax.lax.scan(on, repeat(last, len(noise)), _swapped(noise), unroll=True)[1])
 
 
 def parts_of(proposal: Proposal, quantiles: np.ndarray) -> list[tuple[Proposal, np.ndarray]]:

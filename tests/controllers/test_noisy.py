@@ -78,15 +78,6 @@ def test_held_noise_is_drawn_every_few_decisions() -> None:
     assert len(np.unique(e[:, 0])) == 200
 
 
-def test_bursts_are_held_and_begin_and_end_at_their_rates() -> None:
-    """A chain of two states: a share rate / (rate + theta), each for 1 / theta."""
-    e = noise("bursts", level=1.0, theta=5.0, rate=1.0, count=50_000)[:, 0]
-    active = np.abs(e) > 1e-6
-    assert active.mean() == pytest.approx(1 / 6, rel=0.1)
-    assert active.sum() / (active[1:] > active[:-1]).sum() == pytest.approx(10, rel=0.1)
-    assert not np.diff(e)[active[1:] & active[:-1]].any()
-
-
 def test_the_inner_controller_keeps_its_state_and_evaluates_without_noise() -> None:
     inner = StagesController({"a": STILL, "b": STILL}, (3,))
     controller = NoisyController(inner)

@@ -104,12 +104,3 @@ def test_a_plan_moves_by_the_deviation_divided_by_the_temperature() -> None:
     moved = make(x, before, jax.random.key(0)) - before
     np.testing.assert_allclose(moved[:, 0], [0.05 / np.sqrt(2), 0.05], atol=0.003)
     assert (make(x, jnp.ones((2, 1)), jax.random.key(0)) < 1).all()  # whose candidates are clipped
-
-
-def test_coloured_noise_forgets_what_it_began_with() -> None:
-    """Its mean falls as c^t, its variance rises as 1 - c^2t; with c = 0 nothing changes."""
-    noise, c = jax.random.normal(jax.random.key(0), (20_000, 3, 1)), 0.8 ** np.arange(1, 4)
-    e = np.asarray(sampling.coloured(noise, jnp.array([2.0]), 0.8))[..., 0]
-    np.testing.assert_allclose(e.mean(0), 2 * c, atol=0.03)
-    np.testing.assert_allclose(e.var(0), 1 - c**2, rtol=0.05)
-    np.testing.assert_array_equal(sampling.coloured(noise, jnp.array([2.0]), 0.0), noise)

@@ -25,9 +25,9 @@ def imagined(proposal: Proposal, samples: int = K) -> sampling.Samples:
     """Candidates in a model x' = x + u."""
     params = Params(policy=begun(POLICY, SPEC))
     both = sampling.Candidates(proposal, samples)
-    plan, start = jnp.full((T, SPEC.act), 0.1), jnp.ones(SPEC.obs)
-    noise = jax.random.normal(jax.random.key(1), (samples, *plan.shape))
-    return both.imagine(params, lambda x, u: x + u, both.begin(SPEC), start, plan, noise)
+    plan, key = jnp.full((T, SPEC.act), 0.1), jax.random.key(1)
+    start = jnp.ones(SPEC.obs)
+    return both.imagine(params, lambda x, u: x + u, both.begin(SPEC), start, plan, key)
 
 
 @pytest.mark.parametrize(("share", "count"), [(0.0, 0), (0.25, 2), (0.5, 4), (1.0, 8)])
