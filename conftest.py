@@ -56,6 +56,7 @@ SLOW = [  # MJX compiles these for up to 40 s each; the other robots always run
         "sawyer_push",
         "sawyer_torque",
         "sprk",
+        "swimmer",
     )
 ]
 

@@ -26,6 +26,7 @@ from hybrid_rl.envs.ant import Ant
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.envs.hopper import Hopper
 from hybrid_rl.envs.humanoid import Humanoid
+from hybrid_rl.envs.swimmer import Swimmer
 from hybrid_rl.envs.walker2d import Walker2d
 
 WORLDS = {  # name -> environment, its fields, Gymnasium's
@@ -34,6 +35,7 @@ WORLDS = {  # name -> environment, its fields, Gymnasium's
     "walker": (Walker2d, {}, "Walker2d-v5"),
     "ant, points": (Ant, {"reward": "gymnasium"}, "Ant-v5"),
     "ant, capsules": (Ant, {"reward": "gymnasium", "contacts": "capsules"}, "Ant-v5"),
+    "swimmer": (Swimmer, {}, "Swimmer-v5"),
     "humanoid": (Humanoid, {"observation": "full"}, "Humanoid-v5"),
 }
 EPISODES, LONGEST = 20, 100  # decisions

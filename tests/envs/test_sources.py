@@ -19,6 +19,7 @@ FILES = {
     "ant": "ant.xml",
     "ant_capsules": "ant.xml",
     "humanoid": "humanoid.xml",
+    "swimmer": "swimmer.xml",
 }
 NAMES = {
     "halfcheetah": "HalfCheetah-v5",
@@ -27,6 +28,7 @@ NAMES = {
     "pendulum": "Pendulum-v1",
     "ant": "Ant-v5",
     "humanoid": "Humanoid-v5",
+    "swimmer": "Swimmer-v5",
 }
 PHYSICAL = ("qpos", "body_", "dof_", "jnt_", "geom_", "actuator_")  # arrays begin with these
 DRAWN = ("geom_matid", "geom_rgba", "geom_group", "geom_user", "geom_size")  # the last: the floor
