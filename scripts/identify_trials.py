@@ -202,7 +202,7 @@ def trial(job: tuple[str, str, str, float, int, int]) -> dict[str, Any]:
         q, v = x[:, 1 : 1 + nq], x[:, 1 + nq : 1 + 2 * nq]
         low, high, speed = arm.bounds
         ends = np.isfinite(low)  # of a joint with limits
-        middle, half = ((high + low) / 2)[ends], ((high - low) / 2)[ends]
+        middle, half = (high[ends] + low[ends]) / 2, (high[ends] - low[ends]) / 2
         used = max(np.max(abs(q[:, ends] - middle) / half), np.max(abs(v) / speed))
         relative = (found.theta / theta - 1).tolist()
         judged = found.held

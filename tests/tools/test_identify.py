@@ -2,6 +2,7 @@
 
 import json
 import time
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -20,6 +21,11 @@ LINK = """<mujoco><option timestep="0.004" integrator="implicitfast"/><worldbody
   <body name="link"><joint name="hinge" axis="0 1 0" damping="0.2" frictionloss="0.1"/>
     <geom type="capsule" size="0.03" fromto="0 0 0 0 0 -0.3" mass="1"/></body>
 </worldbody><actuator><motor name="motor" joint="hinge" gear="4" ctrlrange="-1 1"/></actuator>
+</mujoco>"""
+HANGING = """<mujoco><option timestep="0.002" integrator="implicitfast"/><worldbody>
+  <body><joint name="hinge" axis="0 1 0" ref="180" damping="0.1"/>
+    <inertial pos="0 0 -0.2039" mass="1" diaginertia="1 0.9584 1"/></body>
+</worldbody><actuator><motor name="motor" joint="hinge" gear="2" ctrlrange="-1 1"/></actuator>
 </mujoco>"""
 RANGES = {
     "body.link.mass": [0.6, 1.6],
@@ -100,24 +106,25 @@ def test_the_fit_finds_the_truth_and_says_when_the_model_lacks_something(tmp_pat
     assert wrong.held.widen > 2
 
 
-def test_the_command_plans_fits_and_writes_what_training_reads(tmp_path, monkeypatch, capsys):
+def test_the_commands_of_the_how_to_identify_its_robot(tmp_path, monkeypatch, capsys):
+    """I q'' = 3 u - 2 sin q - 0.2 q' with I = 1, in real time."""
     monkeypatch.chdir(tmp_path)
-    arm = system(tmp_path)
-    (tmp_path / "params.yaml").write_text(yaml.safe_dump({**RANGES, **LIMITS}))
+    page = (Path(__file__).parents[2] / "docs/howto_deploy.md").read_text()
+    Path("my_robot.py").write_text(page.partition("```python\n")[2].partition("```")[0])
+    Path("arm.xml").write_text(HANGING)
+    ranges = {"joint.hinge.damping": [0.05, 0.5], "actuator.motor.gain": [0.5, 2.0]}
+    Path("params.yaml").write_text(yaml.safe_dump(ranges))
     words = ["model=arm.xml", "parameters=params.yaml"]
-    call(command.main, *words, "excite=babble", "seconds=1")
-    assert "body.link.mass" in capsys.readouterr().out
-    plan = fitting.Log(**np.load("plan.npz"))
-    logged(arm, plan, arm.nominal).write("log.npz")
+    call(command.main, *words, "excite=babble", "seconds=1.5")
+    assert "joint.hinge.damping" in capsys.readouterr().out
+    call(command.main, *words, "play=plan.npz", "robot=my_robot:Arm")
     call(command.main, *words, "log=log.npz", "check=log.npz", "starts=1")
-    assert "the model explains the held-out log" in capsys.readouterr().out
-    values = json.loads((tmp_path / "identified/identified.json").read_text())["parameters"]
-    ranges = yaml.safe_load((tmp_path / "identified/ranges.yaml").read_text())
-    assert ranges.keys() == {*RANGES} - {"delay"}
-    assert values["body.link.mass"]["value"] == pytest.approx(1.0, rel=0.1)
-    again = identify.read("identified/arm.xml", {"body.link.mass": [0.1, 9]})
-    assert again.nominal[0] == pytest.approx(values["body.link.mass"]["value"], rel=1e-4)
-    assert (tmp_path / "identified/report.png").stat().st_size > 10_000
+    values = json.loads(Path("identified/identified.json").read_text())["parameters"]
+    assert values["actuator.motor.gain"]["value"] == pytest.approx(1.5, rel=0.1)
+    assert yaml.safe_load(Path("identified/ranges.yaml").read_text()).keys() == ranges.keys()
+    again = identify.read("identified/arm.xml", {"joint.hinge.damping": [0.01, 9]})
+    assert again.nominal[0] == pytest.approx(values["joint.hinge.damping"]["value"], rel=1e-4)
+    assert Path("identified/report.png").stat().st_size > 10_000
 
 
 @pytest.mark.parametrize(
@@ -135,6 +142,12 @@ def test_a_mistake_in_the_parameters_is_one_line(tmp_path, parameters, line):
         identify.read(tmp_path / "arm.xml", parameters)
 
 
+def test_without_the_toolbox_the_line_says_what_to_install(monkeypatch):
+    monkeypatch.delattr("mujoco.sysid.optimize")
+    with pytest.raises(UsageError, match=r'pip install "hybrid_rl\[identify\]"'):
+        fitting.sysid()
+
+
 def test_a_log_of_another_robot_is_one_line(tmp_path):
     np.savez(tmp_path / "log.npz", t=np.arange(30.0), ctrl=np.zeros((30, 2)), q=np.zeros((30, 1)))
     line = r"ctrl is \[30, 2\]; this model needs finite numbers, \[30, 1\]"
@@ -142,12 +155,20 @@ def test_a_log_of_another_robot_is_one_line(tmp_path):
         identify.load(tmp_path / "log.npz", system(tmp_path))
 
 
-@pytest.mark.parametrize(("q", "end"), [(0.1, ""), (2.5, "beyond its limits"), (np.nan, "finite")])
-def test_a_plan_is_played_in_time_and_whatever_happens_ends_in_stop(tmp_path, q, end):
+@pytest.mark.parametrize(
+    ("q", "waits", "end"),
+    [
+        (0.1, 0, ""),
+        (2.5, 0, "beyond its limits"),
+        (np.nan, 0, "finite"),
+        (0.1, 0.4, "did not return in 0.2 s"),
+    ],
+)
+def test_a_plan_is_played_in_time_and_whatever_happens_ends_in_stop(tmp_path, q, waits, end):
     sent, ended = [], []
     robot = SimpleNamespace(
         reset=lambda: None,
-        observe=lambda: (np.array([q, 0.0]), time.monotonic()),
+        observe=lambda: (np.array([q, 0.0]), time.monotonic(), time.sleep(waits))[:2],
         apply=sent.append,
         stop=lambda: ended.append(True),
     )
@@ -158,7 +179,8 @@ def test_a_plan_is_played_in_time_and_whatever_happens_ends_in_stop(tmp_path, q,
             identify.play(arm, plan, robot)
     else:
         log = identify.play(arm, plan, robot)
-        assert (log.t >= plan.t).all()  # never early
-        np.testing.assert_array_equal(log.ctrl, plan.ctrl)
+        assert (log.t >= plan.t[:-1]).all()  # never early
+        np.testing.assert_array_equal(log.ctrl, plan.ctrl[:-1])  # no position after the last one
+        np.testing.assert_array_equal(sent[-len(plan.t) :], plan.ctrl)
     assert ended
-    assert len(sent) == (0 if end else len(plan.t) + 1)
+    assert bool(sent) == (not end)

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from hybrid_rl import UsageError
-from hybrid_rl.tools.identify.excitation import Plan
+from hybrid_rl.tools.identify.excitation import DT, Plan
 from hybrid_rl.tools.identify.log import Log
 from hybrid_rl.tools.identify.system import System
 
@@ -59,9 +59,11 @@ class _Player(threading.Thread):
 
     def run(self) -> None:
         """Send each command at its time."""
-        self.begun, ctrl = time.monotonic() + REST, self.plan.ctrl
+        self.begun, plan = time.monotonic() + REST, self.plan
+        waiting = -np.arange(DT, REST, DT)[::-1]
+        first = np.repeat(plan.ctrl[:1], len(waiting), axis=0)
         try:
-            for t, u in zip((-REST, *self.plan.t), (ctrl[0], *ctrl), strict=True):
+            for t, u in zip((*waiting, *plan.t), (*first, *plan.ctrl), strict=True):
                 self.due = self.begun + t + SILENCE
                 while not self.stopped and (left := self.begun + t - time.monotonic()) > 0:
                     time.sleep(left)
@@ -92,7 +94,7 @@ class _Player(threading.Thread):
 
     def log(self) -> Log:
         """The log of what was sent and observed."""
-        table, m = np.array(self.rows[1:]), self.system.base.nu
+        table, m = np.array(self.rows[-len(self.plan.t) :]), self.system.base.nu
         stamp, sent = table[:, 0] - self.begun, table[:, 1] - self.begun
         new = np.append(True, np.diff(stamp) > 0)  # what came twice counts once
         seen = sent <= stamp[-1]  # there is no position at later commands

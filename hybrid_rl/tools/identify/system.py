@@ -15,7 +15,7 @@ one number together, with all others of the model, they move the robot as before
 
 import copy
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -45,11 +45,11 @@ class System:
     nominal: np.ndarray  # [P]
     low: np.ndarray  # [P] least value
     high: np.ndarray  # [P]
-    noise: float = NOISE
-    sensors: tuple[str, ...] = ()
-    bounds: np.ndarray = field(default_factory=lambda: np.zeros((3, 0)))  # [3, nv] of `limits`
-    spec: Any = None
-    base: Any = None  # the model as its file has it
+    noise: float
+    sensors: tuple[str, ...]
+    bounds: np.ndarray  # [3, nv] of `limits`
+    spec: Any
+    base: mujoco.MjModel  # as the file has it
 
     @property
     def logs(self) -> np.ndarray:
@@ -144,9 +144,8 @@ def _row(spec: Any, base: mujoco.MjModel, name: str, value: Any) -> tuple[float,
     """Nominal value, low and high of a parameter."""
     value = value if isinstance(value, Mapping) else {"range": value}
     try:
-        nominal = value.get("nominal", _get(spec, base, name))
-        if name == DELAY:
-            nominal = value.get("nominal", value["range"][0])
+        own = value["range"][0] if name == DELAY else _get(spec, base, name)
+        nominal = value.get("nominal", own)
         low, high = value.get("range") or (nominal / 2, nominal * 2)
         right = bool(low < high and low <= nominal <= high)
     except (AttributeError, IndexError, TypeError, ValueError, KeyError) as error:
@@ -160,11 +159,9 @@ def _row(spec: Any, base: mujoco.MjModel, name: str, value: Any) -> tuple[float,
 
 def _get(spec: Any, base: mujoco.MjModel, name: str) -> float:
     """The value of a parameter in the model."""
-    if name == DELAY:
-        return 0.0
     kind, element, attribute, *index = name.split(".")
-    if attribute == "gain":
-        return 1.0 if spec.actuator(element) else getattr(None, "gain")  # noqa: B009
+    if (kind, attribute) == ("actuator", "gain"):
+        return float(base.actuator(element).id >= 0)  # 1, or a KeyError
     found = getattr(getattr(spec, kind)(element), attribute)
     return float(found[int(index[0]) if index else 0] if np.ndim(found) else found)
 
@@ -173,11 +170,10 @@ def _set(spec: Any, base: mujoco.MjModel, name: str, value: float) -> None:
     """Give a parameter of `spec` a value; base: the model that has the factors 1."""
     kind, element, attribute, *index = name.split(".")
     part = getattr(spec, kind)(element)
-    if attribute == "gain":
-        known = base.actuator(element)
-        part.gainprm[:], part.biasprm[:] = value * known.gainprm, value * known.biasprm
-        part.forcerange[:] = value * known.forcerange
-    elif name == f"body.{element}.mass":
+    if (kind, attribute) == ("actuator", "gain"):
+        for field in ("gainprm", "biasprm", "forcerange"):
+            getattr(part, field)[:] = value * getattr(base.actuator(element), field)
+    elif (kind, attribute) == ("body", "mass"):
         part.mass = value
         part.inertia[:] = value / base.body(element).mass * base.body(element).inertia
     elif np.ndim(getattr(part, attribute)):
