@@ -211,7 +211,7 @@ def trial(job: tuple[str, str, str, float, int, int]) -> dict[str, Any]:
             **dict(zip(("arm", "kind", "how", "seconds", "truth", "starts"), job, strict=True)),
             **{"relative": relative, "error": float(error), "own": found.error},
             **{"inside": inside[0], "inside_widened": inside[1], "std": found.std.tolist()},
-            **{"deviations": plan.deviations.tolist(), "mismatch": plan.mismatch},
+            **{"deviations": plan.deviations.tolist(), "gained": plan.gained},
             **{"held": vars(judged), "limit": float(used)},
             **{"planned_s": planned, "fitted_s": fitted},
             "weak": [each.text for each in found.weak],

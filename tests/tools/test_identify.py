@@ -63,11 +63,10 @@ def test_a_slider_moves_as_its_closed_form_also_between_steps(tmp_path):
     q = 3 / 4 * np.maximum(t - 0.0123, 0) ** 2
     y = simulation.measured(arm, x, sensors, 0.0, t)[0, :, 0]
     np.testing.assert_allclose(y, q, rtol=1e-3, atol=1e-6)
-    J, others = information.jacobian(arm, arm.nominal, motion, t)
+    J = information.jacobian(arm, arm.nominal, motion, t)
     np.testing.assert_allclose(J[:, 0], -q, rtol=2e-3, atol=1e-6)
     late = -0.1 * 1.5 * np.maximum(t - 0.0123, 0)
     np.testing.assert_allclose(J[:, 1], late, rtol=5e-3, atol=1e-4)
-    assert information.mismatch(arm, J, others) < 1e-3
 
 
 def test_everything_of_a_force_together_is_named_as_what_no_log_shows(tmp_path):
@@ -81,7 +80,7 @@ def test_fisher_tells_more_than_most_signals_and_all_keep_the_limits(tmp_path):
     arm, gained = system(tmp_path), {}
     for how in ("fisher", "sines", "chirp", "steps", "babble"):
         plan = identify.excite(arm, how, 1.0, limits=0.8)
-        gained[how] = -np.log(plan.deviations).sum()
+        gained[how] = plan.gained
         assert plan.reach <= 0.8
         for theta in arm.draw(5, seed=9):
             q = logged(arm, plan, theta).q
@@ -110,14 +109,14 @@ def test_the_commands_of_the_how_to_identify_its_robot(tmp_path, monkeypatch, ca
     """I q'' = 3 u - 2 sin q - 0.2 q' with I = 1, in real time."""
     monkeypatch.chdir(tmp_path)
     page = (Path(__file__).parents[2] / "docs/howto_deploy.md").read_text()
-    Path("my_robot.py").write_text(page.partition("```python\n")[2].partition("```")[0])
+    Path("how_to_robot.py").write_text(page.partition("```python\n")[2].partition("```")[0])
     Path("arm.xml").write_text(HANGING)
     ranges = {"joint.hinge.damping": [0.05, 0.5], "actuator.motor.gain": [0.5, 2.0]}
     Path("params.yaml").write_text(yaml.safe_dump(ranges))
     words = ["model=arm.xml", "parameters=params.yaml"]
     call(command.main, *words, "excite=babble", "seconds=1.5")
     assert "joint.hinge.damping" in capsys.readouterr().out
-    call(command.main, *words, "play=plan.npz", "robot=my_robot:Arm")
+    call(command.main, *words, "play=plan.npz", "robot=how_to_robot:Arm")
     call(command.main, *words, "log=log.npz", "check=log.npz", "starts=1")
     values = json.loads(Path("identified/identified.json").read_text())["parameters"]
     assert values["actuator.motor.gain"]["value"] == pytest.approx(1.5, rel=0.1)

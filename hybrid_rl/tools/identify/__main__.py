@@ -25,7 +25,7 @@ from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.tools.identify import excitation, fitting, log, playing, report
 from hybrid_rl.tools.identify.system import System, read
 
-HOW = ("fisher", *excitation.SIGNALS)
+HOW = (*excitation.SIGNALS, "fisher")
 ARGUMENTS = (
     arguments.Argument("model", "", "its MJCF file", needed="model=FILE.xml"),
     arguments.Argument("parameters", "", "the unknown ones", needed="parameters=FILE.yaml"),
@@ -56,8 +56,6 @@ def prospect(system: System, plan: excitation.Plan) -> list[str]:
     ]
     text += [f"not separable: {each.text}" for each in plan.weak]
     text.append(f"{plan.t[-1]:.1f} s, {plan.reach:.0%} of the nearest limit")
-    if plan.mismatch > excitation.WORST:
-        text.append("the derivatives are not to be believed: a joint sticks, or a motor saturates")
     return text
 
 

@@ -25,14 +25,20 @@ import numpy as np
 from scipy.special import ndtri
 
 from hybrid_rl import UsageError
-from hybrid_rl.tools.identify.information import Weak, covariance, weak
+from hybrid_rl.tools.identify.information import Weak, covariance, weak, without_scale
 from hybrid_rl.tools.identify.log import Log
-from hybrid_rl.tools.identify.simulation import SECANT, Motion, measured, simulate, state
+from hybrid_rl.tools.identify.simulation import (
+    FINE,
+    SECANT,
+    Motion,
+    measured,
+    simulate,
+    state,
+)
 from hybrid_rl.tools.identify.system import System
 
 STARTS, SEARCHED, FINISHED = 6, 8, 2  # starts, iterations of each, and how many go on
 SHORT, LONG = 1.0, 4.0  # [s] of windows
-FINE = 0.005  # secants at the end
 ITERATIONS, TOLERANCE = 30, 1e-4  # of the long windows; relative step that ends them
 DAMPING = 5.0  # factor between dampings that are tried
 NEAR = 0.06  # [s] of the log around a window's begin, for its first state
@@ -173,9 +179,12 @@ class Problem:
 
     def seen(self, x: np.ndarray) -> np.ndarray:
         """[N + S, P] the part of the derivatives by z that no choice of s would make."""
-        J = self.jacobian(x, FINE)
+        J, s = self.jacobian(x, FINE), self.system.scale(self.system.theta(x[: self.P]))
+        move = FINE * np.append(s, np.zeros(self.S))
+        up, down = self.residuals(np.stack((x + move, x - move)))
         q = np.linalg.qr(J[:, self.P :])[0]
-        return J[:, : self.P] - q @ (q.T @ J[:, : self.P])
+        J = without_scale(s, J[:, : self.P], (up - down) / (2 * FINE))
+        return J - q @ (q.T @ J)
 
     def split(self, r: np.ndarray) -> list[np.ndarray]:
         """The residuals [N + S] of each window [T, n]."""
@@ -301,9 +310,7 @@ def fit(
     )
 
 
-def _held(
-    problem: Problem, z: np.ndarray, known: np.ndarray, own: bool
-) -> tuple[Held, np.ndarray]:
+def _held(problem: Problem, z: np.ndarray, known: np.ndarray, own: bool) -> tuple[Held, np.ndarray]:
     """The verdict of another log, and its residuals.
 
     known [P, P]: covariance of z; own: whether the logs that were fitted are explained.

@@ -75,7 +75,7 @@ class _Player(threading.Thread):
                 sent = time.monotonic()
                 self.robot.apply(u)
                 self.rows.append((stamp, sent, *u, *q))
-        except Exception as error:  # noqa: BLE001
+        except Exception as error:
             self.error = error
 
     def _check(self, q: np.ndarray, age: float) -> None:
@@ -85,9 +85,10 @@ class _Player(threading.Thread):
             line = f"the newest observation is {age:.2f} s old"
         elif not np.isfinite(q).all():
             line = "an observation is not finite"
-        elif system.base.nq == system.base.nv and (
-            (q < system.bounds[0]) | (q > system.bounds[1])
-        ).any():
+        elif (
+            system.base.nq == system.base.nv
+            and ((q < system.bounds[0]) | (q > system.bounds[1])).any()
+        ):
             line = f"a position is beyond its limits, {q.tolist()}"
         if line:
             raise UsageError(f"{line}; {STOPPED}")

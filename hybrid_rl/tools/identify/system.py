@@ -10,10 +10,9 @@
 
 Coordinates z [P] are log theta where a range lies above 0, else theta over the width of its range.
 Masses, damping, friction, armature, stiffness and gains carry the unit of a force: multiplied by
-one number together, with all others of the model, they move the robot as before (`scaled`).
+one number together, with all others of the model, they move the robot as before.
 """
 
-import copy
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,12 +26,6 @@ from hybrid_rl import UsageError
 
 DELAY = "delay"
 FORCES = (*("mass", "gain", "damping", "frictionloss", "armature", "stiffness"),)
-OF_FORCE = (  # of MjModel, in the unit of a force, or of its range
-    *("body_mass", "body_inertia", "dof_damping", "dof_frictionloss", "dof_armature"),
-    *("jnt_stiffness", "jnt_actfrcrange", "tendon_stiffness", "tendon_damping"),
-    *("tendon_frictionloss", "tendon_armature", "tendon_actfrcrange", "actuator_gainprm"),
-    *("actuator_biasprm", "actuator_forcerange", "actuator_damping"),
-)
 NOISE = 1e-3  # [rad, m] of a position, where nothing says another
 
 
@@ -70,6 +63,10 @@ class System:
         """Values [..., P] at coordinates."""
         return np.where(self.logs, np.exp(np.where(self.logs, z, 0)), z * (self.high - self.low))
 
+    def scale(self, theta: np.ndarray) -> np.ndarray:
+        """[P] the direction in z in which all parameters of a force go up by one factor."""
+        return self.forces * np.where(self.logs, 1.0, theta / (self.high - self.low))
+
     def draw(self, count: int, seed: int = 0) -> np.ndarray:
         """[count, P] values, uniform in the coordinates of their ranges."""
         random = np.random.default_rng(seed)
@@ -94,21 +91,6 @@ class System:
     def model(self, theta: np.ndarray) -> mujoco.MjModel:
         """The compiled model with these values [P]."""
         return self.described(theta).compile()
-
-    def others(self, theta: np.ndarray, factor: float) -> mujoco.MjModel:
-        """The model in which everything of a force but theta [P] is multiplied by a factor."""
-        return scaled(self.model(np.where(self.forces, theta / factor, theta)), factor)
-
-
-def scaled(model: mujoco.MjModel, factor: float) -> mujoco.MjModel:
-    """A copy whose masses and forces, all of them, are multiplied; it moves as before."""
-    model = copy.copy(model)
-    for name in OF_FORCE:
-        getattr(model, name)[:] *= factor
-    model.opt.density *= factor
-    model.opt.viscosity *= factor
-    mujoco.mj_setConst(model, mujoco.MjData(model))
-    return model
 
 
 def read(model: str | Path, parameters: str | Path | Mapping[str, Any]) -> System:
