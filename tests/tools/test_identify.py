@@ -27,6 +27,7 @@ HANGING = """<mujoco><option timestep="0.002" integrator="implicitfast"/><worldb
     <inertial pos="0 0 -0.2039" mass="1" diaginertia="1 0.9584 1"/></body>
 </worldbody><actuator><motor name="motor" joint="hinge" gear="2" ctrlrange="-1 1"/></actuator>
 </mujoco>"""
+FORCE = '<sensor><actuatorfrc name="torque" actuator="motor"/></sensor></mujoco>'
 RANGES = {
     "body.link.mass": [0.6, 1.6],
     "joint.hinge.damping": [0.1, 0.4],
@@ -74,6 +75,9 @@ def test_everything_of_a_force_together_is_named_as_what_no_log_shows(tmp_path):
     (weak,) = identify.excite(system(tmp_path, parameters=forces), "sines", 2.0).weak
     assert weak.text.startswith("scale: body.link.mass, joint.hinge.damping")
     assert not identify.excite(system(tmp_path), "sines", 2.0).weak
+    text = LINK.replace("</mujoco>", FORCE)
+    seen = system(tmp_path, text, {**forces, **LIMITS, "sensors": ["torque"]})
+    assert not identify.excite(seen, "sines", 2.0).weak
 
 
 def test_fisher_tells_more_than_most_signals_and_all_keep_the_limits(tmp_path):
