@@ -229,10 +229,10 @@ def main() -> None:
     given: Any = arguments.read(__doc__, ARGUMENTS)[0]
     jobs = [
         (arm, kind, how, seconds, k, given["starts"])
+        for k in range(given["truths"])
         for arm in given["arms"]
         for kind in given["kinds"]
         for seconds in given["seconds"]
-        for k in range(given["truths"])
         for how in given["how"]
     ]
     rows: list[dict[str, Any]] = []

@@ -112,6 +112,7 @@ def test_the_fit_finds_the_truth_and_says_when_the_model_lacks_something(tmp_pat
 def test_the_commands_of_the_how_to_identify_its_robot(tmp_path, monkeypatch, capsys):
     """I q'' = 3 u - 2 sin q - 0.2 q' with I = 1, in real time."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)
     page = (Path(__file__).parents[2] / "docs/howto_deploy.md").read_text()
     Path("how_to_robot.py").write_text(page.partition("```python\n")[2].partition("```")[0])
     Path("arm.xml").write_text(HANGING)
