@@ -1,6 +1,7 @@
 """Identify arms with hidden parameters: excitations side by side, wrong structures, faulty logs.
 
-    python -m scripts.identify_trials arm=two_link kinds=right,stribeck truths=10 out=identify.json
+    python -m scripts.identify_trials kinds=right,stribeck truths=10 out=identify.json
+    python -m scripts.identify_trials arms=sawyer,cheetah how=fisher,sines workers=20
 
 Each trial draws a truth from the ranges, plans four seconds at the nominal model, plays them on the
 truth with 1 mrad of noise, fits, and is judged on a babble of four seconds that is the same for all
@@ -31,7 +32,8 @@ from hybrid_rl.tools.identify import simulation
 from hybrid_rl.tools.identify.excitation import Plan
 
 ARGUMENTS = (
-    arguments.Argument("arm", "two_link", "two_link or sawyer"),
+    arguments.Argument("arms", ["two_link"], "with an s: arms or half-cheetahs",
+        arguments.several("two_link", "sawyer", "cheetah")),
     arguments.Argument("kinds", ["right"], "of truths", arguments.several(
         "right", "stribeck", "clock", "jitter", "servo", "backlash")),
     arguments.Argument("how", ["fisher", "sines", "chirp", "babble"], "excitations",
@@ -62,6 +64,7 @@ TWO_LINK = """<mujoco model="arm">
     <position name="elbow" joint="elbow" kp="30" kv="1" forcerange="-8 8" ctrlrange="-1.5 1.5"/>
   </actuator>
 </mujoco>"""  # noqa: E501
+LEGS = ("back_thigh", "back_shin", "front_thigh", "front_shin")
 UNKNOWN = {  # of the two links; ranges of half and 1 / 0.6 of the nominal value
     "two_link": (
         *("body.upper.mass", "body.lower.mass", "joint.shoulder.damping", "joint.elbow.damping"),
@@ -73,6 +76,11 @@ UNKNOWN = {  # of the two links; ranges of half and 1 / 0.6 of the nominal value
         *(f"joint.j{i}.armature" for i in range(3)),
         *("actuator.j1.gain", "actuator.j3.gain", "body.rod.mass"),
     ),
+    "cheetah": (
+        *("geom.floor.friction", "body.torso.mass", "body.front_thigh.mass"),
+        *(f"joint.{leg}.damping" for leg in LEGS),
+        *(f"joint.{leg}.stiffness" for leg in LEGS),
+    ),
 }
 SPEEDS = (1.74, 1.328, 1.957, 1.957, 3.485, 3.485, 4.545)  # [rad/s] of Sawyer
 LIMITS = {
@@ -81,13 +89,14 @@ LIMITS = {
         "elbow": {"position": [-1.5, 1.5], "velocity": 8},
     },
     "sawyer": {f"j{i}": {"velocity": v} for i, v in enumerate(SPEEDS)},
+    "cheetah": {"pitch": {"position": [-0.8, 0.8]}, **{name: {"velocity": 15} for name in LEGS}},
 }
 
 
 def system(arm: str, folder: Path) -> identify.System:
     """An arm and its unknown parameters: a factor of exp(-0.5) to exp(0.5) about the nominal."""
     file = folder / f"{arm}.xml"
-    file.write_text(TWO_LINK if arm == "two_link" else sawyer())
+    file.write_text({"two_link": lambda: TWO_LINK, "sawyer": sawyer, "cheetah": cheetah}[arm]())
     model = identify.read(file, dict.fromkeys(UNKNOWN[arm])).nominal
     ranges: dict[str, Any] = {
         name: [float(v * np.exp(-0.5)), float(v * np.exp(0.5))]
@@ -109,6 +118,14 @@ def sawyer() -> str:
         servo.forcerange[:], servo.forcelimited = (-torque[i], torque[i]), True
         servo.ctrlrange[:], servo.ctrllimited = spec.joint(f"j{i}").range, True
     spec.geom("rod").mass, spec.body("rod").gravcomp = 1.0, 0.0  # a payload
+    spec.compile()
+    return spec.to_xml()
+
+
+def cheetah() -> str:
+    """The library's half-cheetah on a floor whose friction is that of each contact."""
+    spec = mjcf.spec("halfcheetah.xml")
+    spec.geom("floor").priority = 1
     spec.compile()
     return spec.to_xml()
 
@@ -184,7 +201,9 @@ def trial(job: tuple[str, str, str, float, int, int]) -> dict[str, Any]:
         ]
         q, v = x[:, 1 : 1 + nq], x[:, 1 + nq : 1 + 2 * nq]
         low, high, speed = arm.bounds
-        used = max(np.max(abs(q - (low + high) / 2) / ((high - low) / 2)), np.max(abs(v) / speed))
+        ends = np.isfinite(low)  # of a joint with limits
+        middle, half = (high[ends] + low[ends]) / 2, (high[ends] - low[ends]) / 2
+        used = max(np.max(abs(q[:, ends] - middle) / half), np.max(abs(v) / speed))
         relative = (found.theta / theta - 1).tolist()
         judged = found.held
         assert judged is not None
@@ -192,7 +211,7 @@ def trial(job: tuple[str, str, str, float, int, int]) -> dict[str, Any]:
             **dict(zip(("arm", "kind", "how", "seconds", "truth", "starts"), job, strict=True)),
             **{"relative": relative, "error": float(error), "own": found.error},
             **{"inside": inside[0], "inside_widened": inside[1], "std": found.std.tolist()},
-            **{"deviations": plan.deviations.tolist(), "mismatch": plan.mismatch},
+            **{"deviations": plan.deviations.tolist(), "gained": plan.gained},
             **{"held": vars(judged), "limit": float(used)},
             **{"planned_s": planned, "fitted_s": fitted},
             "weak": [each.text for each in found.weak],
@@ -209,10 +228,11 @@ def main() -> None:
     """The command."""
     given: Any = arguments.read(__doc__, ARGUMENTS)[0]
     jobs = [
-        (given["arm"], kind, how, seconds, k, given["starts"])
+        (arm, kind, how, seconds, k, given["starts"])
+        for k in range(given["truths"])
+        for arm in given["arms"]
         for kind in given["kinds"]
         for seconds in given["seconds"]
-        for k in range(given["truths"])
         for how in given["how"]
     ]
     rows: list[dict[str, Any]] = []

@@ -50,7 +50,6 @@ FOLLOWED = {  # what is imported by a name that is no constant: judged, typed, o
     "hybrid_rl/files/targets.py": {"module", "found[1]"},
     "envs/adapters/external.py": {"registered(self.id)"},
     "hybrid_rl/tools/stand_in.py": {"kind.id"},
-    "hybrid_rl/tools/identify/__main__.py": {"module"},
     "envs/mujoco/offscreen.py": {"f'mujoco.{name}'"},
     "hybrid_rl/__init__.py": {"f'hybrid_rl.{module}'"},
     "hybrid_rl/analysis/studies.py": {"home", "module", "name"},

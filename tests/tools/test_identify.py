@@ -2,6 +2,8 @@
 
 import json
 import time
+from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,6 +14,7 @@ from tiny import call
 from hybrid_rl import UsageError, identify
 from hybrid_rl.tools.identify import __main__ as command
 from hybrid_rl.tools.identify import fitting, information, simulation
+from scripts.identify_trials import played
 
 SLIDER = """<mujoco><option timestep="0.001" gravity="0 0 0" integrator="RK4"/><worldbody>
   <body name="car"><joint name="x" type="slide"/><geom size="0.1" mass="2"/></body>
@@ -21,29 +24,26 @@ LINK = """<mujoco><option timestep="0.004" integrator="implicitfast"/><worldbody
     <geom type="capsule" size="0.03" fromto="0 0 0 0 0 -0.3" mass="1"/></body>
 </worldbody><actuator><motor name="motor" joint="hinge" gear="4" ctrlrange="-1 1"/></actuator>
 </mujoco>"""
-RANGES = {
-    "body.link.mass": [0.6, 1.6],
-    "joint.hinge.damping": [0.1, 0.4],
-    "joint.hinge.frictionloss": [0.05, 0.2],
-    "delay": {"nominal": 0.01, "range": [0.0, 0.03]},
-}
+HANGING = """<mujoco><option timestep="0.002" integrator="implicitfast"/><worldbody>
+  <body><joint name="hinge" axis="0 1 0" ref="180" damping="0.1"/>
+    <inertial pos="0 0 -0.2039" mass="1" diaginertia="1 0.9584 1"/></body>
+</worldbody><actuator><motor name="motor" joint="hinge" gear="2"/></actuator></mujoco>"""
+FORCE = '<sensor><actuatorfrc name="torque" actuator="motor"/></sensor></mujoco>'
+ENDS = ((0.1, 0, ""), (2.5, 0, "beyond its"), (np.nan, 0, "finite"), (0.1, 0.4, "did not return"))
+RANGES = {"body.link.mass": [0.6, 1.6], "joint.hinge.damping": [0.1, 0.4]}
+RANGES |= {"joint.hinge.frictionloss": [0.05, 0.2], "delay": {"nominal": 0.01, "range": [0, 0.03]}}
 LIMITS = {"limits": {"hinge": {"position": [-2, 2], "velocity": 9}}}
 
 
 def system(tmp_path, text=LINK, parameters=RANGES):
     (tmp_path / "arm.xml").write_text(text)
-    return identify.read(tmp_path / "arm.xml", {**parameters, **(LIMITS if text == LINK else {})})
+    return identify.read(tmp_path / "arm.xml", {**(LIMITS if text == LINK else {}), **parameters})
 
 
 def logged(arm, plan, theta, seed=0, friction=0.0):
     """A log of the arm with theta; friction: more of it [N m], in one direction alone."""
-    first, _ = simulation.start(arm)
-    steps = round((plan.t[-1] + 0.01) / arm.base.opt.timestep)
-    motion = simulation.Motion(plan.t, plan.ctrl - friction / 4, first, 0.0, steps)
-    x, sensors = simulation.simulate([arm.model(theta)], [arm.delay(theta)], [motion])
-    q = simulation.measured(arm, x, sensors, 0.0, plan.t)[0]
-    noise = 1e-3 * np.random.default_rng(seed).normal(size=q.shape)
-    return identify.Log(plan.t, plan.ctrl, q + noise)
+    log, _ = played(arm, replace(plan, ctrl=plan.ctrl - friction / 4), theta, "right", seed)
+    return replace(log, ctrl=plan.ctrl)
 
 
 def test_a_slider_moves_as_its_closed_form_also_between_steps(tmp_path):
@@ -57,11 +57,9 @@ def test_a_slider_moves_as_its_closed_form_also_between_steps(tmp_path):
     q = 3 / 4 * np.maximum(t - 0.0123, 0) ** 2
     y = simulation.measured(arm, x, sensors, 0.0, t)[0, :, 0]
     np.testing.assert_allclose(y, q, rtol=1e-3, atol=1e-6)
-    J, others = information.jacobian(arm, arm.nominal, motion, t)
+    J = information.jacobian(arm, arm.nominal, motion, t)
     np.testing.assert_allclose(J[:, 0], -q, rtol=2e-3, atol=1e-6)
-    late = -0.1 * 1.5 * np.maximum(t - 0.0123, 0)
-    np.testing.assert_allclose(J[:, 1], late, rtol=5e-3, atol=1e-4)
-    assert information.mismatch(arm, J, others) < 1e-3
+    np.testing.assert_allclose(J[:, 1], -0.15 * np.maximum(t - 0.0123, 0), rtol=5e-3, atol=1e-4)
 
 
 def test_everything_of_a_force_together_is_named_as_what_no_log_shows(tmp_path):
@@ -69,18 +67,18 @@ def test_everything_of_a_force_together_is_named_as_what_no_log_shows(tmp_path):
     (weak,) = identify.excite(system(tmp_path, parameters=forces), "sines", 2.0).weak
     assert weak.text.startswith("scale: body.link.mass, joint.hinge.damping")
     assert not identify.excite(system(tmp_path), "sines", 2.0).weak
+    text = LINK.replace("</mujoco>", FORCE)
+    seen = system(tmp_path, text, {**forces, **LIMITS, "sensors": ["torque"]})
+    assert not identify.excite(seen, "sines", 2.0).weak
 
 
 def test_fisher_tells_more_than_most_signals_and_all_keep_the_limits(tmp_path):
-    arm, gained = system(tmp_path), {}
-    for how in ("fisher", "sines", "chirp", "steps", "babble"):
-        plan = identify.excite(arm, how, 1.0, limits=0.8)
-        gained[how] = -np.log(plan.deviations).sum()
+    arm = system(tmp_path)
+    plans = {how: identify.excite(arm, how, 1.0, limits=0.8) for how in command.HOW}
+    for plan in plans.values():
         assert plan.reach <= 0.8
-        for theta in arm.draw(5, seed=9):
-            q = logged(arm, plan, theta).q
-            assert np.abs(q).max() < 2.01
-    assert gained.pop("fisher") > np.median([*gained.values()])
+        assert all(np.abs(logged(arm, plan, theta).q).max() < 2.01 for theta in arm.draw(5, seed=9))
+    assert plans["fisher"].gained > np.median([plan.gained for plan in plans.values()])
 
 
 def test_the_fit_finds_the_truth_and_says_when_the_model_lacks_something(tmp_path):
@@ -100,24 +98,22 @@ def test_the_fit_finds_the_truth_and_says_when_the_model_lacks_something(tmp_pat
     assert wrong.held.widen > 2
 
 
-def test_the_command_plans_fits_and_writes_what_training_reads(tmp_path, monkeypatch, capsys):
+def test_the_commands_of_the_how_to_identify_its_robot(tmp_path, monkeypatch):
+    """I q'' = 3 u - 2 sin q - 0.2 q' with I = 1, in real time."""
     monkeypatch.chdir(tmp_path)
-    arm = system(tmp_path)
-    (tmp_path / "params.yaml").write_text(yaml.safe_dump({**RANGES, **LIMITS}))
+    monkeypatch.syspath_prepend(tmp_path)
+    page = (Path(__file__).parents[2] / "docs/howto_deploy.md").read_text()
+    Path("how_to_robot.py").write_text(page.partition("```python\n")[2].partition("```")[0])
+    Path("arm.xml").write_text(HANGING)
+    ranges = {"joint.hinge.damping": [0.05, 0.5], "actuator.motor.gain": [0.5, 2.0]}
+    Path("params.yaml").write_text(yaml.safe_dump(ranges))
     words = ["model=arm.xml", "parameters=params.yaml"]
-    call(command.main, *words, "excite=babble", "seconds=1")
-    assert "body.link.mass" in capsys.readouterr().out
-    plan = fitting.Log(**np.load("plan.npz"))
-    logged(arm, plan, arm.nominal).write("log.npz")
+    call(command.main, *words, "excite=babble", "seconds=1.5")
+    call(command.main, *words, "play=plan.npz", "robot=how_to_robot:Arm")
     call(command.main, *words, "log=log.npz", "check=log.npz", "starts=1")
-    assert "the model explains the held-out log" in capsys.readouterr().out
-    values = json.loads((tmp_path / "identified/identified.json").read_text())["parameters"]
-    ranges = yaml.safe_load((tmp_path / "identified/ranges.yaml").read_text())
-    assert ranges.keys() == {*RANGES} - {"delay"}
-    assert values["body.link.mass"]["value"] == pytest.approx(1.0, rel=0.1)
-    again = identify.read("identified/arm.xml", {"body.link.mass": [0.1, 9]})
-    assert again.nominal[0] == pytest.approx(values["body.link.mass"]["value"], rel=1e-4)
-    assert (tmp_path / "identified/report.png").stat().st_size > 10_000
+    values = json.loads(Path("identified/identified.json").read_text())["parameters"]
+    assert values["actuator.motor.gain"]["value"] == pytest.approx(1.5, rel=0.1)
+    assert yaml.safe_load(Path("identified/ranges.yaml").read_text()).keys() == ranges.keys()
 
 
 @pytest.mark.parametrize(
@@ -130,24 +126,28 @@ def test_the_command_plans_fits_and_writes_what_training_reads(tmp_path, monkeyp
     ],
 )
 def test_a_mistake_in_the_parameters_is_one_line(tmp_path, parameters, line):
-    (tmp_path / "arm.xml").write_text(LINK)
     with pytest.raises(UsageError, match=line):
-        identify.read(tmp_path / "arm.xml", parameters)
+        system(tmp_path, parameters=parameters)
+
+
+def test_without_the_toolbox_the_line_says_what_to_install(monkeypatch):
+    monkeypatch.delattr("mujoco.sysid.optimize")
+    with pytest.raises(UsageError, match=r'pip install "hybrid_rl\[identify\]"'):
+        fitting.sysid()
 
 
 def test_a_log_of_another_robot_is_one_line(tmp_path):
     np.savez(tmp_path / "log.npz", t=np.arange(30.0), ctrl=np.zeros((30, 2)), q=np.zeros((30, 1)))
-    line = r"ctrl is \[30, 2\]; this model needs finite numbers, \[30, 1\]"
-    with pytest.raises(UsageError, match=line):
+    with pytest.raises(UsageError, match=r"ctrl is \[30, 2\]; this model needs finite numbers"):
         identify.load(tmp_path / "log.npz", system(tmp_path))
 
 
-@pytest.mark.parametrize(("q", "end"), [(0.1, ""), (2.5, "beyond its limits"), (np.nan, "finite")])
-def test_a_plan_is_played_in_time_and_whatever_happens_ends_in_stop(tmp_path, q, end):
+@pytest.mark.parametrize(("q", "waits", "end"), ENDS)
+def test_a_plan_is_played_in_time_and_whatever_happens_ends_in_stop(tmp_path, q, waits, end):
     sent, ended = [], []
     robot = SimpleNamespace(
         reset=lambda: None,
-        observe=lambda: (np.array([q, 0.0]), time.monotonic()),
+        observe=lambda: (np.array([q, 0.0]), time.monotonic(), time.sleep(waits))[:2],
         apply=sent.append,
         stop=lambda: ended.append(True),
     )
@@ -158,7 +158,7 @@ def test_a_plan_is_played_in_time_and_whatever_happens_ends_in_stop(tmp_path, q,
             identify.play(arm, plan, robot)
     else:
         log = identify.play(arm, plan, robot)
-        assert (log.t >= plan.t).all()  # never early
-        np.testing.assert_array_equal(log.ctrl, plan.ctrl)
-    assert ended
-    assert len(sent) == (0 if end else len(plan.t) + 1)
+        assert (log.t >= plan.t[:-1]).all()  # never early
+        np.testing.assert_array_equal(log.ctrl, plan.ctrl[:-1])  # no position after the last one
+        np.testing.assert_array_equal(sent[-len(plan.t) :], plan.ctrl)
+    assert (bool(ended), bool(sent)) == (True, not end)

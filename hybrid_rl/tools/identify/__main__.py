@@ -18,16 +18,14 @@ if __name__ == "__main__":
 
     command.install()
 
-import importlib
-import sys
-from pathlib import Path
 from typing import Any
 
 from hybrid_rl import UsageError, arguments, command
+from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.tools.identify import excitation, fitting, log, playing, report
 from hybrid_rl.tools.identify.system import System, read
 
-HOW = ("fisher", *excitation.SIGNALS)
+HOW = (*excitation.SIGNALS, "fisher")
 ARGUMENTS = (
     arguments.Argument("model", "", "its MJCF file", needed="model=FILE.xml"),
     arguments.Argument("parameters", "", "the unknown ones", needed="parameters=FILE.yaml"),
@@ -58,8 +56,6 @@ def prospect(system: System, plan: excitation.Plan) -> list[str]:
     ]
     text += [f"not separable: {each.text}" for each in plan.weak]
     text.append(f"{plan.t[-1]:.1f} s, {plan.reach:.0%} of the nearest limit")
-    if plan.mismatch > excitation.WORST:
-        text.append("the derivatives are not to be believed: a joint sticks, or a motor saturates")
     return text
 
 
@@ -78,7 +74,7 @@ def main() -> None:
     elif given["play"]:
         out = arguments.output("out", given["out"] or "log.npz", [".npz"])
         plan = log.load(given["play"], system)
-        playing.play(system, plan, made(given["robot"])).write(out)
+        playing.play(system, plan, Robot(make=given["robot"]).made()).write(out)
         print(f"played {plan.t[-1]:.1f} s; see {out}")
     else:
         how = given["excite"] or "sines"
@@ -88,16 +84,6 @@ def main() -> None:
             out = arguments.output("out", given["out"] or "plan.npz", [".npz"])
             plan.write(out)
             print(f"see {out}")
-
-
-def made(name: str) -> Any:
-    """The robot of MODULE:CLASS."""
-    module, _, kind = name.partition(":")
-    sys.path.insert(0, str(Path.cwd()))
-    try:
-        return getattr(importlib.import_module(module), kind)()
-    except (ImportError, AttributeError, ValueError) as error:
-        raise UsageError(f"robot={name}: must be MODULE:CLASS of your robot ({error})") from error
 
 
 if __name__ == "__main__":

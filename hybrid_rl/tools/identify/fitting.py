@@ -17,7 +17,6 @@ to what noise makes of it (Birge 1932, "The calculation of errors by the method 
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
@@ -26,14 +25,20 @@ import numpy as np
 from scipy.special import ndtri
 
 from hybrid_rl import UsageError
-from hybrid_rl.tools.identify.information import Weak, covariance, weak
+from hybrid_rl.tools.identify.information import Weak, covariance, weak, without_scale
 from hybrid_rl.tools.identify.log import Log
-from hybrid_rl.tools.identify.simulation import SECANT, Motion, measured, simulate, state
+from hybrid_rl.tools.identify.simulation import (
+    FINE,
+    SECANT,
+    Motion,
+    measured,
+    simulate,
+    state,
+)
 from hybrid_rl.tools.identify.system import System
 
 STARTS, SEARCHED, FINISHED = 6, 8, 2  # starts, iterations of each, and how many go on
 SHORT, LONG = 1.0, 4.0  # [s] of windows
-FINE = 0.005  # secants at the end
 ITERATIONS, TOLERANCE = 30, 1e-4  # of the long windows; relative step that ends them
 DAMPING = 5.0  # factor between dampings that are tried
 NEAR = 0.06  # [s] of the log around a window's begin, for its first state
@@ -93,25 +98,17 @@ class Window:
     log: Log
     rows: slice
     first: np.ndarray  # [nstate] roughly
-
-    @property
-    def t(self) -> np.ndarray:
-        """[T] its times."""
-        return self.log.t[self.rows]
-
-    @property
-    def y(self) -> np.ndarray:
-        """[T, n] what was measured."""
-        return self.log.y[self.rows]
+    t: np.ndarray  # [T] its times
+    y: np.ndarray  # [T, n] what was measured
 
 
 class Problem:
-    """Residuals of logs, in windows of some seconds, and their derivatives."""
+    """Residuals of logs, in windows of some seconds, over x = (z [P], s [S]) and their minimum."""
 
     def __init__(
         self, system: System, logs: Sequence[Log], seconds: float, sigma: np.ndarray
     ) -> None:
-        self.system, self.sigma = system, sigma
+        self.system, self.logs, self.sigma = system, logs, sigma
         self.windows = [each for log in logs for each in _windows(system, log, seconds)]
         h = system.base.opt.timestep
         self.motions = [
@@ -160,23 +157,19 @@ class Problem:
 
     def jacobian(self, x: np.ndarray, step: float) -> np.ndarray:
         """[N + S, P + S] by central secants; all windows move their first states at once."""
-        P, W, each = self.P, len(self.windows), self.S // len(self.windows)
-        low, high = self.system.z(self.system.low), self.system.z(self.system.high)
-        rows = []
-        for i in range(P):
-            up, down = x.copy(), x.copy()
-            up[i], down[i] = min(x[i] + step, high[i]), max(x[i] - step, low[i])
-            rows += [up, down]
+        P, W = self.P, len(self.windows)
+        each, z = self.S // W, range(P)
+        moves = np.zeros((P + each, P + self.S))
+        moves[z, z] = step
         for j in range(each):
-            for sign in (0.5, -0.5):
-                moved = x.copy()
-                moved[P + j :: each] += sign
-                rows.append(moved)
-        rows = np.stack(rows)
-        r = self.residuals(rows)
-        d = (r[::2] - r[1::2]).T
+            moves[P + j, P + j :: each] = 0.5
+        up, down = x + moves, x - moves
+        up[:, :P] = np.minimum(up[:, :P], self.system.z(self.system.high))
+        down[:, :P] = np.maximum(down[:, :P], self.system.z(self.system.low))
+        r = self.residuals(np.concatenate((up, down)))
+        d = (r[: P + each] - r[P + each :]).T
         J = np.zeros((d.shape[0], P + self.S))
-        J[:, :P] = d[:, :P] / (rows[0 : 2 * P : 2] - rows[1 : 2 * P : 2])[range(P), range(P)]
+        J[:, :P] = d[:, :P] / (up - down)[z, z]
         ends = np.cumsum([0, *(w.y.size for w in self.windows)])
         for w in range(W):
             at = slice(ends[w], ends[w + 1])
@@ -184,23 +177,24 @@ class Problem:
         J[len(self.y) + np.arange(self.S), P + np.arange(self.S)] = LOOSE
         return J
 
-    def without_states(self, J: np.ndarray) -> np.ndarray:
+    def seen(self, x: np.ndarray) -> np.ndarray:
         """[N + S, P] the part of the derivatives by z that no choice of s would make."""
+        J, s = self.jacobian(x, FINE), self.system.scale(self.system.theta(x[: self.P]))
+        move = FINE * np.append(s, np.zeros(self.S))
+        up, down = self.residuals(np.stack((x + move, x - move)))
         q = np.linalg.qr(J[:, self.P :])[0]
-        return J[:, : self.P] - q @ (q.T @ J[:, : self.P])
+        J = without_scale(s, J[:, : self.P], (up - down) / (2 * FINE))
+        return J - q @ (q.T @ J)
 
-    def split(self, flat: np.ndarray) -> list[np.ndarray]:
-        """What is of the log in [N + S, ...], of each window [T, n, ...]."""
+    def split(self, r: np.ndarray) -> list[np.ndarray]:
+        """The residuals [N + S] of each window [T, n]."""
         ends = np.cumsum([w.y.size for w in self.windows])
-        parts = np.split(flat[: ends[-1]], ends[:-1])
-        return [
-            part.reshape(*w.y.shape, *flat.shape[1:])
-            for part, w in zip(parts, self.windows, strict=True)
-        ]
+        parts = np.split(r[: ends[-1]], ends[:-1])
+        return [part.reshape(w.y.shape) for part, w in zip(parts, self.windows, strict=True)]
 
-    def correlated(self, flat: np.ndarray) -> np.ndarray:
+    def correlated(self, r: np.ndarray) -> np.ndarray:
         """[n] mean r_t r_{t+k}: the squared residuals without their noise, in units of sigma."""
-        pairs = [(r[k:] * r[:-k]).mean(0) for r in self.split(flat) for k in range(1, LAGS + 1)]
+        pairs = [(r[k:] * r[:-k]).mean(0) for r in self.split(r) for k in range(1, LAGS + 1)]
         return np.mean(pairs, axis=0)
 
     @property
@@ -208,13 +202,53 @@ class Problem:
         """Standard deviation of the mean of `correlated` if there is noise alone."""
         return 1 / np.sqrt(LAGS * len(self.y))
 
+    def shown(self, r: np.ndarray) -> list[tuple[Log, np.ndarray]]:
+        """Each log, and what was simulated [T, n] where the residuals were r [N + S]."""
+        made = {id(log): np.zeros_like(log.y) for log in self.logs}
+        for window, part in zip(self.windows, self.split(r), strict=True):
+            made[id(window.log)][window.rows] = window.y + part * self.sigma
+        return [(log, made[id(log)]) for log in self.logs]
+
+    def solve(
+        self, z: np.ndarray, step: float, most: int, fixed: bool = False
+    ) -> tuple[np.ndarray, float]:
+        """The minimum x [P + S] from z, and its cost; fixed: over the first states alone."""
+        toolbox, system, P = sysid(), self.system, self.P
+        low, high = system.z(system.low), system.z(system.high)
+        edge = 2e-3 * (high - low)  # the toolbox warns of a start nearer to an end
+        z = np.clip(z, low + edge, high - edge)
+        unknown = toolbox.ParameterDict()
+        for name, value, least, greatest in zip(system.names, z, low, high, strict=True):
+            bounded = float(value), float(least), float(greatest)
+            unknown.add(toolbox.Parameter(name, *bounded, frozen=fixed))
+        s = np.zeros(self.S)
+        unknown.add(toolbox.Parameter("first states", s, s - 1e3, s + 1e3))
+
+        def whole(x: np.ndarray) -> np.ndarray:
+            return np.concatenate((z, x.ravel())) if fixed else x.ravel()
+
+        _, result = toolbox.optimize(
+            unknown,
+            lambda x, _: ([self.residuals(whole(x)[None]).T], None, None),
+            verbose=False,
+            max_iters=most,
+            jacobian=lambda x, _: self.jacobian(whole(x), step)[:, P if fixed else 0 :],
+            output=io.StringIO(),
+            x_scale="jac",
+            xtol=TOLERANCE,
+            mu_factor=DAMPING,
+        )
+        x = whole(np.asarray(result.x, float))
+        return x, float((self.residuals(x[None]) ** 2).sum())
+
 
 def _windows(system: System, log: Log, seconds: float) -> list[Window]:
     """Windows of about `seconds`, of equal length."""
     count = max(round(np.ptp(log.t) / seconds), 1)
     edges = np.searchsorted(log.t, np.linspace(log.t[0], log.t[-1], count + 1))
     edges[-1] = len(log.t) - 1
-    return [Window(log, slice(a, b + 1), _rough(system, log, a)) for a, b in pairwise(edges)]
+    parts = [slice(a, b + 1) for a, b in pairwise(edges)]
+    return [Window(log, at, _rough(system, log, at.start), log.t[at], log.y[at]) for at in parts]
 
 
 def _rough(system: System, log: Log, row: int) -> np.ndarray:
@@ -240,146 +274,76 @@ def fit(
     Raises:
         UsageError: without the extra `identify`.
     """
-    toolbox = sysid()
-    n = system.base.nq + sum(int(system.base.sensor(name).dim[0]) for name in system.sensors)
-    sigma = np.full(n, system.noise)
-    sigma[system.base.nq :] = np.concatenate([log.y[:, system.base.nq :] for log in logs]).std(0)
+    nq, P = system.base.nq, system.size
+    sensors = np.concatenate([log.y[:, nq:] for log in logs])
+    sigma = np.concatenate((np.full(nq, system.noise), sensors.std(0)))
     short = Problem(system, logs, SHORT, sigma)
     begins = [system.nominal, *system.draw(max(starts - 1, 0), seed)]
-    tried = [_solved(toolbox, short, system.z(theta), SECANT, SEARCHED) for theta in begins]
+    tried = [short.solve(system.z(theta), SECANT, SEARCHED) for theta in begins]
     best = sorted(tried, key=lambda each: each[1])[:FINISHED]
     for step in (SECANT, FINE):  # sigma of the first, too
         long = Problem(system, logs, LONG, sigma)
-        ends = [_solved(toolbox, long, x[: long.P], step, ITERATIONS) for x, _ in best]
-        best = sorted(ends, key=lambda each: each[1])[: 1 if step == SECANT else None]
+        ends = [long.solve(x[:P], step, ITERATIONS) for x, _ in best]
+        best = [min(ends, key=lambda each: each[1])]
         x, _ = best[0]
         r = long.residuals(x[None])[0]
-        own = long.correlated(r)
-        squares = sum((part**2).sum(0) for part in long.split(r)) / (len(long.y) / n)
-        sigma = sigma * np.sqrt(np.maximum(squares - own, 1e-12))
+        squares = sum((part**2).sum(0) for part in long.split(r)) / (len(long.y) / len(sigma))
+        sigma = sigma * np.sqrt(np.maximum(squares - long.correlated(r), 1e-12))
     final = Problem(system, logs, LONG, sigma)
-    solution = _Solution(final, x)
-    held = None if check is None else _held(toolbox, solution, check, sigma)
-    theta = system.theta(x[: final.P])
-    shown = [(log, _shown(toolbox, system, theta, log, sigma)) for log in (*logs, check) if log]
-    error = _rms(final.correlated(solution.r), sigma, system)
-    std = np.sqrt(np.diag(solution.covariance))
-    return Found(system, theta, std, solution.weak, sigma, error, held, shown)
+    r, J = final.residuals(x[None])[0], final.seen(x)
+    known, squares = covariance(system, J.T @ J), final.correlated(r)
+    shown, held = final.shown(r), None
+    if check is not None:
+        problem = Problem(system, [check], LONG, sigma)
+        own = bool(squares.mean() <= float(ndtri(LEVEL)) * final.chance)
+        held, r = _held(problem, x[:P], known, own)
+        shown += problem.shown(r)
+    return Found(
+        system,
+        system.theta(x[:P]),
+        np.sqrt(np.diag(known)),
+        weak(system, J.T @ J),
+        sigma,
+        _rms(final, squares),
+        held,
+        shown,
+    )
 
 
-class _Solution:
-    """A minimum, and what is known there."""
+def _held(problem: Problem, z: np.ndarray, known: np.ndarray, own: bool) -> tuple[Held, np.ndarray]:
+    """The verdict of another log, and its residuals.
 
-    def __init__(self, problem: Problem, x: np.ndarray) -> None:
-        self.problem, self.x = problem, x
-        self.r, self.J = problem.residuals(x[None])[0], problem.jacobian(x, FINE)
-
-    @cached_property
-    def information(self) -> np.ndarray:
-        """[P, P] of z, whatever the states at the beginning were."""
-        J = self.problem.without_states(self.J)
-        return J.T @ J
-
-    @property
-    def covariance(self) -> np.ndarray:
-        """[P, P] of z."""
-        return covariance(self.problem.system, self.information)
-
-    @property
-    def weak(self) -> list[Weak]:
-        """Directions that the logs leave open."""
-        return weak(self.problem.system, self.information)
-
-
-def _held(toolbox: Any, solution: _Solution, check: Log, sigma: np.ndarray) -> Held:
-    """Judge a fit by another log."""
-    system, P = solution.problem.system, solution.problem.P
-    problem = Problem(system, [check], LONG, sigma)
-    x, _ = _solved(toolbox, problem, solution.x[:P], FINE, 8, fixed=True)
-    nominal, _ = _solved(toolbox, problem, system.z(system.nominal), FINE, 8, fixed=True)
-    found, known = (problem.correlated(problem.residuals(each[None])[0]) for each in (x, nominal))
-    J = problem.without_states(problem.jacobian(x, FINE))[: len(problem.y)]
-    root = J @ np.linalg.cholesky(solution.covariance)  # [N, P]
-    random = np.random.default_rng(0)
+    known [P, P]: covariance of z; own: whether the logs that were fitted are explained.
+    """
+    system, P = problem.system, problem.P
+    x, _ = problem.solve(z, FINE, 8, fixed=True)
+    other, _ = problem.solve(system.z(system.nominal), FINE, 8, fixed=True)
+    r, nominal = problem.residuals(np.stack((x, other)))
+    found, random = problem.correlated(r), np.random.default_rng(0)
+    root = problem.seen(x)[: len(problem.y)] @ np.linalg.cholesky(known)  # [N, P]
     draws = ((root @ random.normal(size=(P, DRAWS))) ** 2).mean(0)
     predicted = draws + problem.chance * random.normal(size=DRAWS)
-    e2, own = float(found.mean()), solution.problem.correlated(solution.r).mean()
-    unlikely = float(ndtri(LEVEL)) * solution.problem.chance
-    explained = bool(e2 <= np.quantile(predicted, LEVEL) and own <= unlikely)
-    widen = 1.0
+    explained, widen = bool(own and found.mean() <= np.quantile(predicted, LEVEL)), 1.0
     if not explained:
-        alone, _ = _solved(toolbox, problem, solution.x[:P], FINE, ITERATIONS)
-        other = _Solution(problem, alone)
-        apart = solution.x[:P] - alone[:P]
-        birge = apart @ np.linalg.solve(solution.covariance + other.covariance, apart) / P
-        widen = float(np.sqrt(max(1.0, e2 / draws.mean(), birge)))
-    n = system.base.nq
-    expected = float(np.sqrt(draws.mean()) * np.sqrt((sigma[:n] ** 2).mean()))
-    return Held(_rms(found, sigma, system), _rms(known, sigma, system), expected, explained, widen)
+        alone, _ = problem.solve(z, FINE, ITERATIONS)
+        J, apart = problem.seen(alone), z - alone[:P]
+        birge = apart @ np.linalg.solve(known + covariance(system, J.T @ J), apart) / P
+        widen = float(np.sqrt(max(1.0, found.mean() / draws.mean(), birge)))
+    expected = _rms(problem, np.full(len(problem.sigma), draws.mean()))
+    errors = _rms(problem, found), _rms(problem, problem.correlated(nominal))
+    return Held(*errors, expected, explained, widen), r
 
 
-def _rms(squares: np.ndarray, sigma: np.ndarray, system: System) -> float:
+def _rms(problem: Problem, squares: np.ndarray) -> float:
     """RMS error of the positions, of squares in units of sigma [n]."""
-    n = system.base.nq
-    return float(np.sqrt(max((squares[:n] * sigma[:n] ** 2).mean(), 0.0)))
-
-
-def _shown(
-    toolbox: Any, system: System, theta: np.ndarray, log: Log, sigma: np.ndarray
-) -> np.ndarray:
-    """What the model with theta does in a log [T, n]."""
-    problem = Problem(system, [log], LONG, sigma)
-    x, _ = _solved(toolbox, problem, system.z(theta), FINE, 8, fixed=True)
-    s = x[problem.P :].reshape(1, len(problem.windows), -1)
-    result = np.zeros_like(log.y)
-    for window, y in zip(problem.windows, problem.simulated(x[None, : problem.P], s), strict=True):
-        result[window.rows] = y[0]
-    return result
-
-
-def _solved(
-    toolbox: Any, problem: Problem, z: np.ndarray, step: float, most: int, fixed: bool = False
-) -> tuple[np.ndarray, float]:
-    """The minimum x [P + S] from z, and its cost; fixed: over the first states alone."""
-    system, P = problem.system, problem.P
-    low, high = system.z(system.low), system.z(system.high)
-    edge = 2e-3 * (high - low)  # the toolbox warns of a start nearer to an end
-    z = np.clip(z, low + edge, high - edge)
-    unknown = toolbox.ParameterDict()
-    for name, value, least, greatest in zip(system.names, z, low, high, strict=True):
-        own = toolbox.Parameter(name, float(value), float(least), float(greatest), frozen=fixed)
-        unknown.add(own)
-    s = np.zeros(problem.S)
-    unknown.add(toolbox.Parameter("first states", s, s - 1e3, s + 1e3))
-    free = slice(P if fixed else 0, None)
-
-    def whole(x: np.ndarray) -> np.ndarray:
-        return np.concatenate((z, x)) if fixed else x
-
-    def residual(x: np.ndarray, _: Any) -> tuple[list[np.ndarray], None, None]:
-        return [problem.residuals(whole(x.ravel())[None]).T], None, None
-
-    _, result = toolbox.optimize(
-        unknown,
-        residual,
-        verbose=False,
-        max_iters=most,
-        jacobian=lambda x, _: problem.jacobian(whole(x.ravel()), step)[:, free],
-        output=io.StringIO(),
-        x_scale="jac",
-        xtol=TOLERANCE,
-        mu_factor=DAMPING,
-    )
-    x = whole(np.asarray(result.x, float).ravel())
-    return x, float((problem.residuals(x[None]) ** 2).sum())
+    n = problem.system.base.nq
+    return float(np.sqrt(max((squares[:n] * problem.sigma[:n] ** 2).mean(), 0.0)))
 
 
 def sysid() -> Any:
     """MuJoCo's toolbox, whose module is empty where a package that it needs is missing."""
     from mujoco import sysid as toolbox
 
-    try:
-        _ = toolbox.optimize
-    except AttributeError as error:
-        raise UsageError(INSTALL) from error
+    if getattr(toolbox, "optimize", None) is None:
+        raise UsageError(INSTALL)
     return toolbox

@@ -10,42 +10,32 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hybrid_rl.tools.identify.simulation import SECANT, Motion, measured, simulate
-from hybrid_rl.tools.identify.system import OF_FORCE, System
+from hybrid_rl.tools.identify.simulation import FINE, Motion, measured, simulate
+from hybrid_rl.tools.identify.system import System
 
 NAMED = 0.25  # share of the largest entry from which a parameter belongs to a direction
 SCALE = 0.9  # cosine from which a direction is the scale of all forces
-FINE = 0.01  # central secants, where the information of one motion is judged
+NOTHING = 1e-4  # of what the forces change alone: all of them together change nothing
 
 
-def jacobian(
-    system: System, theta: np.ndarray, motion: Motion, t: np.ndarray, step: float = FINE
-) -> tuple[np.ndarray, np.ndarray]:
-    """J [T n, P] by central secants, and the column of all other forces [T n]."""
-    y = []
-    for h in (step, -step):
-        models, delays = columns(system, theta, h)
-        x, sensors = simulate(models[1:], delays[1:], [motion])
-        y.append(measured(system, x, sensors, motion.begin, t).reshape(len(x), -1))
-    J = (y[0] - y[1]).T / (2 * step)
-    return J[:, :-1], J[:, -1]
+def jacobian(system: System, theta: np.ndarray, motion: Motion, t: np.ndarray) -> np.ndarray:
+    """J [T n, P] by central secants."""
+    directions = np.vstack((np.eye(system.size), system.scale(theta)))
+    z = system.z(theta) + FINE * np.concatenate((directions, -directions))
+    values = system.theta(z)
+    models, delays = map(system.model, values), map(system.delay, values)
+    x, sensors = simulate([*models], [*delays], [motion])
+    y = measured(system, x, sensors, motion.begin, t).reshape(2, len(directions), -1)
+    J = (y[0] - y[1]).T / (2 * FINE)
+    return without_scale(system.scale(theta), J[:, :-1], J[:, -1])
 
 
-def columns(system: System, theta: np.ndarray, step: float = SECANT) -> tuple[list, list[float]]:
-    """Models and delays at theta, a step along each of P coordinates, and of all other forces."""
-    z = system.z(theta)
-    values = system.theta(z + step * np.vstack((np.zeros(system.size), np.eye(system.size))))
-    models = [system.model(value) for value in values]
-    models.append(system.others(theta, np.exp(step)))
-    return models, [system.delay(value) for value in (*values, theta)]
-
-
-def mismatch(system: System, J: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """[...] the sum of the columns of forces [..., N, P], which should be 0, over the largest."""
-    forces = J[..., system.forces]
-    total = np.linalg.norm(forces.sum(-1) + others, axis=-1)
-    most = np.maximum(np.linalg.norm(forces, axis=-2).max(-1, initial=0.0), 1e-9)
-    return total / most
+def without_scale(s: np.ndarray, J: np.ndarray, together: np.ndarray) -> np.ndarray:
+    """J [N, P] without the errors of secants along s [P], if a step along it changes nothing."""
+    most = np.linalg.norm(J[:, s != 0], axis=0).max(initial=0.0)
+    if np.linalg.norm(together) > NOTHING * most:
+        return J
+    return J - np.outer(J @ s, s) / max(s @ s, 1e-12)
 
 
 @dataclass(frozen=True)
@@ -61,25 +51,9 @@ def widths(system: System) -> np.ndarray:
     return (system.z(system.high) - system.z(system.low)) / np.sqrt(12)
 
 
-def scale_open(system: System) -> bool:
-    """Whether everything of a force is unknown, and no sensor sees one."""
-    model, other = system.model(system.nominal), system.others(system.nominal, 2.0)
-    known = (*((getattr(model, name), getattr(other, name)) for name in OF_FORCE),)
-    return not system.sensors and all(np.allclose(a, b) for a, b in known)
-
-
-def _seen(system: System, information: np.ndarray) -> np.ndarray:
-    """An information matrix [P, P] without what errors of derivatives tell of an open scale."""
-    if not scale_open(system):
-        return information
-    s = system.forces / np.sqrt(system.forces.sum())
-    rest = np.eye(system.size) - np.outer(s, s)
-    return rest @ information @ rest
-
-
 def weak(system: System, information: np.ndarray) -> list[Weak]:
     """The directions that an information matrix [P, P] leaves wider than the ranges do."""
-    w, information = widths(system), _seen(system, information)
+    w = widths(system)
     values, vectors = np.linalg.eigh(information * w[:, None] * w)  # 1: as much as the range says
     found = []
     for value, vector in zip(values, (vectors * w[:, None]).T, strict=True):
@@ -106,4 +80,4 @@ def _named(system: System, v: np.ndarray) -> str:
 
 def covariance(system: System, information: np.ndarray) -> np.ndarray:
     """[P, P] of the coordinates after data with this information [P, P], and the ranges."""
-    return np.linalg.inv(_seen(system, information) + np.diag(1 / widths(system) ** 2))
+    return np.linalg.inv(information + np.diag(1 / widths(system) ** 2))

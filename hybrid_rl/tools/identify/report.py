@@ -43,7 +43,8 @@ def _edges(found: Found) -> list[str]:
     """A remark for each parameter that ended at an end of its range."""
     system = found.system
     z, low, high = (system.z(x) for x in (found.theta, system.low, system.high))
-    at = np.minimum(z - low, high - z) < 1e-3 * (high - low)
+    below = np.where(system.low == 0, np.inf, z - low)  # nothing here is below 0
+    at = np.minimum(below, high - z) < 1e-3 * (high - low)
     return ["  at the end of its range: widen it" if each else "" for each in at]
 
 

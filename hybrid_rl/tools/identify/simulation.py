@@ -1,13 +1,12 @@
-"""Motions of models side by side (MuJoCo C, float64), and their derivatives by secants.
+"""Motions of models side by side (MuJoCo C, float64).
 
-    y(t) = h(x(t)),   x' = f(x, u(t - delay), theta),   J = dy / dz [n, P]
+    y(t) = h(x(t)),   x' = f(x, u(t - delay), theta)
 
 A command holds until the next one. A step of the physics gets the mean of the commands that act in
 it, so that y is a smooth function of the delay.
 
 A short difference quotient is wrong where an actuator saturates or a joint sticks: y jumps by one
-step. So the derivatives are secants of 5%. As everything of a force together changes nothing, the
-columns of `forces` and of all other forces must add up to 0, which tells how good they are.
+step. So the derivatives are secants.
 """
 
 import os
@@ -20,7 +19,7 @@ from mujoco import rollout
 
 from hybrid_rl.tools.identify.system import System
 
-SECANT = 0.05  # of a coordinate
+SECANT, FINE = 0.05, 0.005  # of a coordinate: to find a minimum, and to judge
 
 
 @dataclass(frozen=True)

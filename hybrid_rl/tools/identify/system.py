@@ -10,12 +10,11 @@
 
 Coordinates z [P] are log theta where a range lies above 0, else theta over the width of its range.
 Masses, damping, friction, armature, stiffness and gains carry the unit of a force: multiplied by
-one number together, with all others of the model, they move the robot as before (`scaled`).
+one number together, with all others of the model, they move the robot as before.
 """
 
-import copy
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -27,12 +26,6 @@ from hybrid_rl import UsageError
 
 DELAY = "delay"
 FORCES = (*("mass", "gain", "damping", "frictionloss", "armature", "stiffness"),)
-OF_FORCE = (  # of MjModel, in the unit of a force, or of its range
-    *("body_mass", "body_inertia", "dof_damping", "dof_frictionloss", "dof_armature"),
-    *("jnt_stiffness", "jnt_actfrcrange", "tendon_stiffness", "tendon_damping"),
-    *("tendon_frictionloss", "tendon_armature", "tendon_actfrcrange", "actuator_gainprm"),
-    *("actuator_biasprm", "actuator_forcerange", "actuator_damping"),
-)
 NOISE = 1e-3  # [rad, m] of a position, where nothing says another
 
 
@@ -45,11 +38,11 @@ class System:
     nominal: np.ndarray  # [P]
     low: np.ndarray  # [P] least value
     high: np.ndarray  # [P]
-    noise: float = NOISE
-    sensors: tuple[str, ...] = ()
-    bounds: np.ndarray = field(default_factory=lambda: np.zeros((3, 0)))  # [3, nv] of `limits`
-    spec: Any = None
-    base: Any = None  # the model as its file has it
+    noise: float
+    sensors: tuple[str, ...]
+    bounds: np.ndarray  # [3, nv] of `limits`
+    spec: Any
+    base: mujoco.MjModel  # as the file has it
 
     @property
     def logs(self) -> np.ndarray:
@@ -69,6 +62,10 @@ class System:
     def theta(self, z: np.ndarray) -> np.ndarray:
         """Values [..., P] at coordinates."""
         return np.where(self.logs, np.exp(np.where(self.logs, z, 0)), z * (self.high - self.low))
+
+    def scale(self, theta: np.ndarray) -> np.ndarray:
+        """[P] the direction in z in which all parameters of a force go up by one factor."""
+        return self.forces * np.where(self.logs, 1.0, theta / (self.high - self.low))
 
     def draw(self, count: int, seed: int = 0) -> np.ndarray:
         """[count, P] values, uniform in the coordinates of their ranges."""
@@ -94,21 +91,6 @@ class System:
     def model(self, theta: np.ndarray) -> mujoco.MjModel:
         """The compiled model with these values [P]."""
         return self.described(theta).compile()
-
-    def others(self, theta: np.ndarray, factor: float) -> mujoco.MjModel:
-        """The model in which everything of a force but theta [P] is multiplied by a factor."""
-        return scaled(self.model(np.where(self.forces, theta / factor, theta)), factor)
-
-
-def scaled(model: mujoco.MjModel, factor: float) -> mujoco.MjModel:
-    """A copy whose masses and forces, all of them, are multiplied; it moves as before."""
-    model = copy.copy(model)
-    for name in OF_FORCE:
-        getattr(model, name)[:] *= factor
-    model.opt.density *= factor
-    model.opt.viscosity *= factor
-    mujoco.mj_setConst(model, mujoco.MjData(model))
-    return model
 
 
 def read(model: str | Path, parameters: str | Path | Mapping[str, Any]) -> System:
@@ -144,9 +126,8 @@ def _row(spec: Any, base: mujoco.MjModel, name: str, value: Any) -> tuple[float,
     """Nominal value, low and high of a parameter."""
     value = value if isinstance(value, Mapping) else {"range": value}
     try:
-        nominal = value.get("nominal", _get(spec, base, name))
-        if name == DELAY:
-            nominal = value.get("nominal", value["range"][0])
+        own = value["range"][0] if name == DELAY else _get(spec, base, name)
+        nominal = value.get("nominal", own)
         low, high = value.get("range") or (nominal / 2, nominal * 2)
         right = bool(low < high and low <= nominal <= high)
     except (AttributeError, IndexError, TypeError, ValueError, KeyError) as error:
@@ -160,11 +141,9 @@ def _row(spec: Any, base: mujoco.MjModel, name: str, value: Any) -> tuple[float,
 
 def _get(spec: Any, base: mujoco.MjModel, name: str) -> float:
     """The value of a parameter in the model."""
-    if name == DELAY:
-        return 0.0
     kind, element, attribute, *index = name.split(".")
-    if attribute == "gain":
-        return 1.0 if spec.actuator(element) else getattr(None, "gain")  # noqa: B009
+    if (kind, attribute) == ("actuator", "gain"):
+        return float(base.actuator(element).id >= 0)  # 1, or a KeyError
     found = getattr(getattr(spec, kind)(element), attribute)
     return float(found[int(index[0]) if index else 0] if np.ndim(found) else found)
 
@@ -173,11 +152,10 @@ def _set(spec: Any, base: mujoco.MjModel, name: str, value: float) -> None:
     """Give a parameter of `spec` a value; base: the model that has the factors 1."""
     kind, element, attribute, *index = name.split(".")
     part = getattr(spec, kind)(element)
-    if attribute == "gain":
-        known = base.actuator(element)
-        part.gainprm[:], part.biasprm[:] = value * known.gainprm, value * known.biasprm
-        part.forcerange[:] = value * known.forcerange
-    elif name == f"body.{element}.mass":
+    if (kind, attribute) == ("actuator", "gain"):
+        for field in ("gainprm", "biasprm", "forcerange"):
+            getattr(part, field)[:] = value * getattr(base.actuator(element), field)
+    elif (kind, attribute) == ("body", "mass"):
         part.mass = value
         part.inertia[:] = value / base.body(element).mass * base.body(element).inertia
     elif np.ndim(getattr(part, attribute)):
