@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.analysis import curves_picture, learning_curves
+from hybrid_rl.analysis import learning_curves
 from hybrid_rl.analysis.curves import curve_of, spread
 from hybrid_rl.analysis.logged import Learner, count_failures, learners
 from hybrid_rl.analysis.results import RunFolder
@@ -104,7 +104,7 @@ def main() -> None:
     given: Any = read(__doc__, ARGUMENTS)[0]
     found = numbers(Path(given["runs"]))
     drawn = learning_curves.from_numbers(found)
-    save(curves_picture.plot(drawn, "wall_s"), found, output("out", given["out"], (".png",)))
+    save(learning_curves.plot(drawn, "wall_s"), found, output("out", given["out"], (".png",)))
     for robot, methods in found["minutes"].items():
         for method, rows in methods.items():
             known = {m: np.array(row) for m, row in rows.items() if np.isfinite(row).all()}

@@ -51,7 +51,7 @@ FOLLOWED = {  # what is imported by a name that is no constant: judged, typed, o
     "envs/adapters/external.py": {"registered(self.id)"},
     "hybrid_rl/tools/stand_in.py": {"kind.id"},
     "envs/mujoco/offscreen.py": {"f'mujoco.{name}'"},
-    "hybrid_rl/__init__.py": {"f'hybrid_rl.{module}'"},
+    "hybrid_rl/__init__.py": {"f'{module}.{member}'", "module"},
     "hybrid_rl/analysis/studies.py": {"home", "module", "name"},
 }
 
