@@ -111,7 +111,7 @@ def methods_of(experiment: str) -> list[list[str]]:
     files = [node]
     if "/settings@_global_" in inherited:
         name = inherited["/settings@_global_"]
-        files.append(OmegaConf.load(config.CONF / "settings" / f"{name}.yaml"))
+        files.append(OmegaConf.load(file("settings", name)))
     lists = [OmegaConf.select(each, "hydra.sweeper.params.algo") for each in files]
     names = next(filter(None, lists), "")
     return [[f"algo={name}"] for name in names.split(",")] if names else [[]]

@@ -63,7 +63,7 @@ def runs_here(name, given):
         metrics = set(given.get("metric", "train/return").split(","))
         return "study" not in given and "x" not in given and metrics <= METRICS
     elsewhere = ("train", "benchmark", "stand_in", "robot")  # test_benchmark.py, test_robot_run.py
-    elsewhere += ("view", "demo", "identify")  # tests/tools
+    elsewhere += ("view", "demo", "identify", "suite")  # tests/tools
     elsewhere += ("thesis.studies.belief_video",)  # test_belief_frames.py
     return name not in elsewhere and "..." not in given.values()
 
