@@ -16,7 +16,8 @@ from threading import local
 
 import pytest
 
-CACHE = Path(__file__).resolve().parent / ".cache" / "jax"
+HERE = Path(__file__).resolve().parent
+CACHE = HERE / ".cache" / "jax"
 FLAGS = ["--xla_backend_optimization_level=0"]  # a third less to compile, same mathematics
 if version("jaxlib").startswith("0.10."):  # later releases abort at unknown flags
     # The emitters would compute the frames of a long chain of bodies again and again: MJX's
@@ -43,7 +44,8 @@ for name, value in SETTINGS.items():
 
 gc.set_threshold(50_000, 50, 50)  # tracing makes many objects that stay
 
-SLOW = [  # MJX compiles these for up to 40 s each; the other robots always run
+PARTS = 3  # commits that share the tests of a folder of tests/, each of which has its part
+SLOW = [  # MJX compiles these for up to 40 s each
     f"{task}-mjx"
     for task in (
         "halfcheetah",
@@ -52,7 +54,9 @@ SLOW = [  # MJX compiles these for up to 40 s each; the other robots always run
         "walker2d",
         "ant",
         "humanoid",
+        "legs",
         "panda_stack",
+        "reach",
         "sawyer_push",
         "sawyer_torque",
         "sprk",
@@ -67,7 +71,7 @@ def pytest_addoption(parser):
 
 
 def pytest_configure(config):
-    line = "turns(n): a commit runs every n-th of these tests of a file, chosen by its hash"
+    line = "turns(n): a commit runs every n-th of these tests, chosen by its hash"
     config.addinivalue_line("markers", line)
 
 
@@ -87,17 +91,23 @@ def pytest_collection_modifyitems(config, items):
 
 
 def others_turn(items):
-    """The tests that another commit runs: TURN of the environment, else the hash, chooses."""
+    """The tests that another commit runs: TURN of the environment, else the hash, chooses.
+
+    Those that read a fixture of their module run together, and so do those of equal parameters.
+    """
     from hybrid_rl.run.machine.provenance import git_commit
 
     turn = int(os.environ.get("TURN") or f"0x{git_commit() or 0}", 0)
-    found, left = {}, set()
+    places, left = {}, set()
     for item in items:
-        if mark := item.get_closest_marker("turns"):
-            before = found.setdefault((item.path, mark.args), [])
-            if (len(before) - turn) % mark.args[0]:
-                left.add(item)
-            before.append(item)
+        mark, folders = item.get_closest_marker("turns"), item.path.relative_to(HERE).parts
+        n = mark.args[0] if mark else PARTS if folders[0] == "tests" and folders[2:] else 1
+        made = [each[-1] for each in item._fixtureinfo.name2fixturedefs.values()]
+        shared = any(each.scope == "module" and each.baseid for each in made)
+        of = "" if shared else item.callspec.id if hasattr(item, "callspec") else item.name
+        before = places.setdefault(n, {})
+        if (before.setdefault((item.path, of), len(before)) - turn) % n:
+            left.add(item)
     return left
 
 
@@ -209,7 +219,7 @@ def merged_once():
     def files(repo):
         sources = repo.get_sources()
         folders = [Path(each.path) for each in sources if each.scheme() == "file"]
-        others = [each for each in folders if not each.is_relative_to(Path(__file__).parent)]
+        others = [each for each in folders if not each.is_relative_to(HERE)]
         found = sorted(file for folder in others for file in folder.rglob("*.yaml"))
         return [each.path for each in sources], [(file, file.read_bytes()) for file in found]
 

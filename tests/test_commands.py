@@ -27,6 +27,8 @@ from hybrid_rl.run.saved import build_run, load, restore
 from hybrid_rl.settings import build as config
 from hybrid_rl.training.rollout import evaluation_keys
 
+pytestmark = pytest.mark.turns(3)
+
 MODES = {"full": "eval/return", "policy": "eval/policy_return", "planner": "eval/planner_return"}
 NAME = re.compile(r"(train|eval|model|sac|planner|perf|world)/[a-z_]+")
 

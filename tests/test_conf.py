@@ -80,7 +80,7 @@ def held(node: Any) -> set[str]:
 EVERYWHERE = {"hybrid_rl.training.agent.Agent", "hybrid_rl.training.episode.Episode"}
 
 
-@pytest.mark.turns(3)
+@pytest.mark.turns(len(EACH) // 8)
 @pytest.mark.parametrize(("task", "algo"), EACH, ids=["-".join(pair) for pair in EACH])
 def test_every_method_and_every_task_learn(task: str, algo: str, tmp_path: Path) -> None:
     """Eight decisions of two learners, with learning, all finite; of some only shapes of one."""

@@ -33,6 +33,8 @@ from hybrid_rl.run.saved import Trained
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Params
 
+pytestmark = pytest.mark.turns(3)
+
 SPEC = Pendulum().spec
 KEYS = jax.random.split(jax.random.key(0), 2)
 MODEL = Gaussian(hidden=(8,))

@@ -10,6 +10,8 @@ from tiny import call, contents
 from hybrid_rl import figures
 from hybrid_rl.cli import command
 
+pytestmark = pytest.mark.turns(3)
+
 TOY = '''"""Toy: a line.
 
     python -m hybrid_rl.figures study=toy

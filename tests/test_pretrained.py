@@ -14,6 +14,8 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.run.saved import names, read
 from hybrid_rl.settings import build as config
 
+pytestmark = pytest.mark.turns(3)
+
 NAMES = names()
 
 

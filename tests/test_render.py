@@ -19,6 +19,8 @@ from hybrid_rl.run.saved import Trained
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import EnvState, Params, Spec
 
+pytestmark = pytest.mark.turns(3)
+
 SPEC = Spec(obs=1, act=1, dt=0.1)
 
 

@@ -49,6 +49,9 @@ class MLP(nn.Module):
         return nn.Dense(self.out, kernel_init=last, precision=of_products)(x)
 
 
+MLP.init = jax.jit(nn.Module.init, static_argnums=0)  # equal networks are traced one time
+
+
 class Perceptron(NamedTuple):
     """u = middle + half squash(W_L a(... a(W_1 (x - mean) / scale + b_1) ...) + b_L) as arrays."""
 

@@ -139,7 +139,6 @@ def test_the_driver_says_whether_the_processor_draws(choosing, monkeypatch, rend
     assert offscreen.by_processor() == expected
 
 
-@pytest.mark.turns(2)
 @pytest.mark.parametrize("name", offscreen.BACKENDS)
 def test_each_backend_draws_or_is_not_chosen(name):
     """In a process of its own, after mujoco was imported for no display at all."""

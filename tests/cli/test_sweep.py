@@ -19,8 +19,6 @@ from hybrid_rl import train
 from hybrid_rl.errors import DivergenceError
 from hybrid_rl.settings.compose import explain
 
-pytestmark = pytest.mark.turns(3)
-
 SHORT = [*TINY, "algo=sac", "total_steps=200", "eval_every=200", "checkpoint_every=200"]
 
 

@@ -23,8 +23,6 @@ from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import rollout
 from hybrid_rl.types import EnvState, Params, Spec
 
-pytestmark = pytest.mark.turns(2)
-
 
 @dataclass(frozen=True)
 class Sledge:

@@ -21,8 +21,6 @@ from hybrid_rl.models.local_linear import LocalLinear
 from hybrid_rl.policies.regulator import Regulator
 from hybrid_rl.types import Params
 
-pytestmark = pytest.mark.turns(3)
-
 WORLD = CartDoublePendulum()
 PI = Regulator(WORLD, (5.0, 50.0, 50.0, 20.0, 700.0, 700.0), (1600.0,))
 START = jnp.array([0.3, 0.02, -0.01, 0.0, 0.1, 0.0])

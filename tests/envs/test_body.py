@@ -64,7 +64,6 @@ def test_a_weak_motor_is_a_smaller_action(task):
         np.testing.assert_array_equal(now, jitted(make(task), "step")(state, smaller).data.qvel)
 
 
-@pytest.mark.turns(2)
 @pytest.mark.parametrize("task", [pytest.param(task, id=f"{task}-mjx") for task in ROBOTS])
 def test_mjx_moves_as_mujoco_c(task):
     """From each state that MuJoCo C reaches; most robots only with `--slow`: they compile long."""
@@ -133,7 +132,6 @@ def of_mujoco(name, factor, height):
     return data.qvel
 
 
-@pytest.mark.turns(2)
 @pytest.mark.parametrize("implementation", ["native", "mjx"])
 def test_each_field_that_an_episode_has_for_itself_acts_as_in_mujoco(implementation):
     """And sensors are those of the state.

@@ -12,8 +12,6 @@ import pytest
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.hopper import Hopper
 
-pytestmark = pytest.mark.turns(2)
-
 
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
 def test_brax_wrappers_run():

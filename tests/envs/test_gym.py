@@ -9,8 +9,6 @@ from worlds import OWN_TEST, TASKS
 from hybrid_rl.envs.adapters.gymnasium import GymnasiumEnv, GymnasiumVectorEnv
 from hybrid_rl.envs.analytic.two_link import TwoLink
 
-pytestmark = pytest.mark.turns(2)
-
 ID = "hybrid_rl/"
 
 

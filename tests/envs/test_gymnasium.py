@@ -14,8 +14,6 @@ from hybrid_rl.envs.analytic.two_link import TwoLink
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.envs.hopper import Hopper
 
-pytestmark = pytest.mark.turns(2)
-
 
 @pytest.mark.filterwarnings("ignore:.*Box observation space (min|max)imum value is:UserWarning")
 @pytest.mark.parametrize("name", ["HalfCheetah", "TwoLink"])

@@ -8,7 +8,7 @@ from worlds import BROKEN, LIFTED, OTHER, TOUCHING, apart, make, rollout
 
 from hybrid_rl.envs.mujoco.physics import Physics
 
-pytestmark = pytest.mark.turns(4)
+pytestmark = pytest.mark.turns(6)
 
 
 @pytest.fixture(scope="module")

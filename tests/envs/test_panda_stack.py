@@ -10,8 +10,6 @@ from hybrid_rl.envs.experts.stack import StackController
 from hybrid_rl.envs.panda_stack import TOOL, PandaStack
 from hybrid_rl.types import Params
 
-pytestmark = pytest.mark.turns(2)
-
 
 def _panda(env, block, closed, fingers):
     """The state with the block at this offset from the hand [3], and the hand's position [3]."""

@@ -12,8 +12,6 @@ from hybrid_rl.envs.analytic.point_mass import PointMass
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.sprk import TIMESTEP, Sprk
 
-pytestmark = pytest.mark.turns(3)
-
 WALL = (0.5, 0.8, 0.0, 0.4, 0.1, 0.01)
 DISC = (0.5, 0.8, 0.0, 0.15, 0.15, 0.15)
 POSE = (0.55, 0.45, 0.5)

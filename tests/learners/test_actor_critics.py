@@ -17,8 +17,6 @@ from hybrid_rl.learners.sac import SAC
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
 from hybrid_rl.types import Batch, Params, Spec
 
-pytestmark = pytest.mark.turns(3)
-
 SPEC = Spec(obs=1, act=1, dt=1.0)
 B = 64
 RATES = dict.fromkeys(("policy_learning_rate", "critic_learning_rate"), 3e-3)

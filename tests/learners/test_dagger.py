@@ -16,8 +16,6 @@ from hybrid_rl.policies.deterministic import Deterministic
 from hybrid_rl.settings import build as config
 from hybrid_rl.types import Batch, Params, Spec
 
-pytestmark = pytest.mark.turns(3)
-
 SPEC = Spec(obs=3, act=2, dt=0.1)
 GAIN = np.array([[0.25, -0.5, 0.125], [-0.125, 0.0625, 0.5]], np.float32)
 X: Any = np.random.default_rng(0).normal(size=(40, 3)).astype(np.float32)

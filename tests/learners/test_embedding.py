@@ -17,8 +17,6 @@ from hybrid_rl.models.koopman import Koopman
 from hybrid_rl.policies.linear import Linear
 from hybrid_rl.types import Batch, Params, Spec
 
-pytestmark = pytest.mark.turns(3)
-
 A = np.array([[0.9, 0.3], [-0.2, 0.8]])  # eigenvalues 0.85 +- 0.24i
 B = np.array([[0.1], [0.3]])
 SPEC = Spec(obs=2, act=1, dt=0.1)

@@ -13,8 +13,6 @@ from hybrid_rl.learners.flash_sac import FlashSAC
 from hybrid_rl.policies.unit_gaussian import UnitGaussian
 from hybrid_rl.types import Batch, Params, Spec
 
-pytestmark = pytest.mark.turns(2)
-
 SPEC = Spec(obs=1, act=1, dt=1.0)
 B = 48
 STEPS = 1000

@@ -17,8 +17,6 @@ from hybrid_rl.objectives.predicted_return import PredictedReturn
 from hybrid_rl.rewards.network import RewardNetwork
 from hybrid_rl.types import Batch, Params, Path, Spec
 
-pytestmark = pytest.mark.turns(3)
-
 SPEC = Spec(obs=2, act=1, dt=0.1)
 SCALE = jnp.array([1.0, 100.0])  # units that differ, as positions and velocities do
 

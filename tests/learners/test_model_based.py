@@ -18,8 +18,6 @@ from hybrid_rl.learners.sac import SAC
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
 from hybrid_rl.types import Batch, Imagined, Params, Path, Spec
 
-pytestmark = pytest.mark.turns(3)
-
 A = np.array([[0.9, 0.2], [-0.1, 0.8]], np.float32)
 B = np.array([[0.1], [0.7]], np.float32)
 DISCOUNT, ALPHA = 0.9, 0.2

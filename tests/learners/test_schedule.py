@@ -15,8 +15,6 @@ from hybrid_rl.schedules.linear import LinearDecay
 from hybrid_rl.settings.build import build
 from hybrid_rl.types import Batch, Params
 
-pytestmark = pytest.mark.turns(3)
-
 
 def test_the_factor_is_one_then_falls_to_zero():
     falling = jax.vmap(LinearDecay(decisions=100, share=0.4).factor)

@@ -15,8 +15,6 @@ from hybrid_rl.models.koopman import Koopman
 from hybrid_rl.objectives.information import Information
 from hybrid_rl.types import Batch, Params, Path, Spec
 
-pytestmark = pytest.mark.turns(2)
-
 SPEC = Spec(obs=2, act=1, dt=0.1)
 MU, LAMBDA, DT = -0.3, -1.2, 0.1
 CLOSED = Koopman(Monomials(terms=((0, 0),)))  # z = (x1, x2, x1^2)

@@ -12,8 +12,6 @@ from hybrid_rl import render
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.errors import WorldError
 
-pytestmark = pytest.mark.turns(3)
-
 SLEEPER = '''
 import os
 import time

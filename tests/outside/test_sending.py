@@ -22,8 +22,6 @@ from hybrid_rl.settings import build as config
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import REPLICATED, SEEDS
 
-pytestmark = pytest.mark.turns(3)
-
 E = 2  # environments of each of the two learners
 
 

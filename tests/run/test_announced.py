@@ -15,8 +15,6 @@ from hybrid_rl.run.logs.records import result_line
 from hybrid_rl.run.session import Session
 from hybrid_rl.settings.words import quoted
 
-pytestmark = pytest.mark.turns(3)
-
 
 def test_the_result_is_that_of_the_policy_where_only_it_is_evaluated(tmp_path, capsys):
     result = run(tmp_path / "run", *SAC, "eval_modes=[policy]")

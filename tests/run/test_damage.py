@@ -19,9 +19,6 @@ from hybrid_rl.run.evaluations import Evaluations
 from hybrid_rl.run.logs import records
 from hybrid_rl.run.machine import memory
 
-pytestmark = pytest.mark.turns(3)
-
-
 trained = finished("algo=sac")  # a run that is done
 
 

@@ -32,9 +32,6 @@ from hybrid_rl.settings import build as config
 from hybrid_rl.settings.build import load
 from hybrid_rl.training.loop import Loop
 
-pytestmark = pytest.mark.turns(3)
-
-
 # A run of two seeds that is done.
 trained = finished("algo=sac", "num_seeds=2", "total_steps=100", "checkpoint_every=50")
 

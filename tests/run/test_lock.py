@@ -14,9 +14,6 @@ from tiny import TINY, call_train, contents, only_line
 from hybrid_rl.errors import UsageError
 from hybrid_rl.files.lock import lock
 
-pytestmark = pytest.mark.turns(3)
-
-
 HOLD = """
 import sys, time
 from pathlib import Path

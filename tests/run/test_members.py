@@ -13,8 +13,6 @@ import hybrid_rl
 from hybrid_rl import evaluate, export, train
 from hybrid_rl.run.checkpoints import checkpoint
 
-pytestmark = pytest.mark.turns(3)
-
 SHORT = [*TINY, "algo=sac", "num_seeds=2", "total_steps=200", "eval_every=200", "log_every=100"]
 SHORT += ["checkpoint_every=100"]
 SWEEP = ["sweep.policy_learner.discount=[0.9,0.5]", "sweep.policy_learner.alpha=[1.0,0.1]"]

@@ -27,7 +27,6 @@ from hybrid_rl.tools.doctor.__main__ import CHECKS, examine
 from hybrid_rl.tools.stand_in import Physics
 from hybrid_rl.types import Spec
 
-pytestmark = pytest.mark.turns(3)
 LINE = ["task=robot", "env.make=hybrid_rl.envs.adapters.stand_in:Cartpole", "algo=sac"]
 SPEC = Spec(Cartpole.obs, len(Cartpole.low), Cartpole.dt)
 

@@ -22,8 +22,6 @@ from hybrid_rl.settings.words import quoted
 from hybrid_rl.training.loop import Loop
 from scripts import interrupt
 
-pytestmark = pytest.mark.turns(3)
-
 SAC = ["algo=sac", "num_seeds=2"]
 
 

@@ -20,8 +20,6 @@ from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import Loop
 from scripts import interrupt
 
-pytestmark = pytest.mark.turns(3)
-
 HYBRID = ["task=quadcopter", "algo=hybrid_stochastic", "learning=replay", "physics=native"]
 HYBRID += ["episode.steps=40", "checkpoint_every=150", "eval_every=150", "eval_modes=[policy]"]
 MOTION = ["reward=aim", "reward.quantity=motion", "reward.target=[0,0,1,0,0,0]"]

@@ -201,7 +201,6 @@ def _numbers(leaf: Any) -> np.ndarray:
     return np.asarray(jax.random.key_data(leaf) if is_key else leaf)
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize(
     ("algo", "resets_itself"),
     [("sac", True), ("hybrid_deterministic", False), ("koopman_active", False)],
@@ -237,7 +236,6 @@ def imitating(tmp_path_factory) -> Agent:
     return config.build(config.load([*line, demonstrate(folder, config.load(line))])).agent
 
 
-@pytest.mark.turns(3)
 def test_pretraining_is_gradient_steps_on_demonstrations(imitating):
     """The policy is that of a plain loop over the learner's updates."""
     learners = {"cloning": imitating.learners["cloning"]}
@@ -255,7 +253,6 @@ def test_pretraining_is_gradient_steps_on_demonstrations(imitating):
     jax.tree.map(lambda a, b: np.testing.assert_allclose(a, b, atol=1e-6), ahead, state)
 
 
-@pytest.mark.turns(3)
 def test_no_key_of_pretraining_is_reused(imitating, monkeypatch):
     """Its keys differ from those of the initial state and of the first decision."""
     received = []
@@ -268,7 +265,6 @@ def test_no_key_of_pretraining_is_reused(imitating, monkeypatch):
     assert len(np.unique(jax.random.key_data(keys), axis=0)) == len(keys)
 
 
-@pytest.mark.turns(3)
 def test_pretraining_needs_demonstrations(imitating):
     bare = replace(imitating.replay, demonstrations=None)
     with pytest.raises(ValueError, match="pretrain=3: the memory has no demonstrations"):

@@ -6,10 +6,7 @@ import sys
 
 import jax
 import numpy as np
-import pytest
 from tiny import TINY, finished, rows_of, run, summary_of
-
-pytestmark = pytest.mark.turns(3)
 
 SHORT = ["algo=sac", "num_seeds=2", "total_steps=200"]
 

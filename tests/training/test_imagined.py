@@ -21,8 +21,6 @@ from hybrid_rl.training.imagined import Imagination
 from hybrid_rl.training.rollout import evaluate_episodes, evaluation_keys
 from hybrid_rl.types import Params
 
-pytestmark = pytest.mark.turns(3)
-
 WORLD = PointMass(drag=2.0)
 POLICY = TanhGaussian((16,))
 

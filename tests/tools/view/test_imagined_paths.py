@@ -30,8 +30,6 @@ from hybrid_rl.tools.view.scene import Scene
 from hybrid_rl.tools.view.subject import Source
 from hybrid_rl.training.episode import Episode
 
-pytestmark = pytest.mark.turns(2)
-
 
 @pytest.mark.parametrize(
     ("env", "fits"),

@@ -30,7 +30,6 @@ from hybrid_rl.tools.view.player import Choice, Player
 from hybrid_rl.tools.view.subject import Source, Subject, learner, sliders, with_goals
 from hybrid_rl.training.episode import Episode
 
-pytestmark = pytest.mark.turns(2)
 BLANK = {each.name: each.default for each in view.ARGUMENTS}
 PATIENCE = 60.0  # [s]
 
