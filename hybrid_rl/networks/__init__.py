@@ -35,6 +35,7 @@ class MLP(nn.Module):
     activation: str = "relu"
     layer_norm: bool | str = False  # one of LAYER_NORMS, of every hidden layer
     zero: bool = False  # the last layer starts at zero
+    init = jax.jit(nn.Module.init, static_argnums=0)  # equal networks are traced one time
 
     @nn.compact
     def __call__(self, x: Array) -> Array:
@@ -47,9 +48,6 @@ class MLP(nn.Module):
             x = ACTIVATIONS[self.activation](x)
         last = nn.initializers.zeros if self.zero else SPREAD
         return nn.Dense(self.out, kernel_init=last, precision=of_products)(x)
-
-
-MLP.init = jax.jit(nn.Module.init, static_argnums=0)  # equal networks are traced one time
 
 
 class Perceptron(NamedTuple):
@@ -88,8 +86,7 @@ def side_by_side(each: Sequence[Perceptron]) -> Perceptron:
     first, last = each[0], len(each[0].weights) - 1
     weights, biases = [], []
     for i in range(last + 1):
-        kernels = [one.weights[i] for one in each]
-        bias = [one.biases[i] for one in each]
+        kernels, bias = [one.weights[i] for one in each], [one.biases[i] for one in each]
         if i == last:
             stacked = np.concatenate(kernels) if last else np.sum(kernels, 0)
             weights.append(stacked / len(each))
