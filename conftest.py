@@ -103,7 +103,7 @@ def others_turn(items):
         mark, folders = item.get_closest_marker("turns"), item.path.relative_to(HERE).parts
         n = mark.args[0] if mark else PARTS if folders[0] == "tests" and folders[2:] else 1
         made = [each[-1] for each in item._fixtureinfo.name2fixturedefs.values()]
-        shared = any(each.scope == "module" and each.baseid for each in made)
+        shared = any(each.scope == "module" and each.baseid.endswith(".py") for each in made)
         of = "" if shared else item.callspec.id if hasattr(item, "callspec") else item.name
         before = places.setdefault(n, {})
         if (before.setdefault((item.path, of), len(before)) - turn) % n:
