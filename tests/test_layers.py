@@ -16,10 +16,9 @@ tools stand outside: nothing imports them, and they import what is public (tests
 import ast
 import subprocess
 import sys
+from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
-
-import pytest
 
 from scripts.mutants import MUTANTS
 
@@ -59,8 +58,6 @@ ALLOWED = {
 HYDRA = {"command", "settings", "run", "cli", "tools", "analysis", "thesis"}
 VAGUE = {"utils", "util", "common", "base", "helpers", "helper", "misc", "manager"}
 
-over_files = pytest.mark.parametrize("file", FILES, ids=lambda f: str(f.relative_to(ROOT)))
-
 
 def module_of(file):
     """hybrid_rl.core.sampling of hybrid_rl/core/sampling.py; envs/ counts as hybrid_rl.envs."""
@@ -80,6 +77,7 @@ def layer_of(module):
     return "command" if is_file and parts[1] not in LAYER_FILES else parts[1]
 
 
+@cache
 def imports_of(file):
     """Full names of all modules and objects that a file imports."""
     names = set()
@@ -93,19 +91,23 @@ def imports_of(file):
     return names
 
 
-@over_files
-def test_imports_point_inward(file):
+def outward(file):
+    """What a file imports from where it may not."""
     layer = layer_of(module_of(file))
     if layer == "tools":  # stand outside: test_public.py
-        return
+        return set()
     ours = {name for name in imports_of(file) if name.split(".")[0] == "hybrid_rl"}
-    assert not {name for name in ours if layer_of(name) == "tools"}
+    wrong = {name for name in ours if layer_of(name) == "tools"}
     if layer in ("command", "package"):  # __init__.py names what is public
-        return
+        return wrong
     allowed = {"package", *ALLOWED.get(layer, SHARED)}
     own = ".".join([*module_of(file).split(".")[:3], ""])  # the folder of a part
-    outward = {name for name in ours if layer_of(name) not in allowed and not name.startswith(own)}
-    assert not outward, f"{layer} may import only {sorted(allowed)}"
+    others = {name for name in ours if layer_of(name) not in allowed}
+    return wrong | {name for name in others if not name.startswith(own)}
+
+
+def test_imports_point_inward():
+    assert not {file: names for file in FILES if (names := outward(file))}
 
 
 def test_no_modules_import_each_other_in_a_circle():
@@ -119,33 +121,28 @@ def test_no_modules_import_each_other_in_a_circle():
     TopologicalSorter(graph).prepare()  # raises CycleError, which shows the circle
 
 
-@over_files
-def test_only_the_host_imports_hydra(file):
-    third_party = {name.split(".")[0] for name in imports_of(file)}
-    assert layer_of(module_of(file)) in HYDRA or not third_party & {"hydra", "omegaconf"}
+def test_only_the_host_imports_hydra():
+    others = [file for file in FILES if layer_of(module_of(file)) not in HYDRA]
+    tops = {file: {name.split(".")[0] for name in imports_of(file)} for file in FILES}
+    assert not [file for file in others if tops[file] & {"hydra", "omegaconf"}]
+    assert not [file for file in FILES if tops[file] & {"envs", "conf"}]  # hybrid_rl.envs
 
 
-@over_files
-def test_environments_are_imported_from_the_package(file):
-    assert not {name for name in imports_of(file) if name.split(".")[0] in ("envs", "conf")}
+def test_file_names_are_specific():
+    assert not [file for file in FILES if VAGUE & {*file.relative_to(ROOT).with_suffix("").parts}]
 
 
-@over_files
-def test_file_names_are_specific(file):
-    assert not VAGUE & set(file.relative_to(ROOT).with_suffix("").parts)
-
-
-@over_files
-def test_a_file_is_at_most_400_lines_and_a_function_50(file):
-    text = file.read_text()
-    assert len(text.splitlines()) <= 400
+def test_a_file_is_at_most_400_lines_and_a_function_50():
+    texts = {file: file.read_text() for file in FILES}
+    assert not [file for file, text in texts.items() if len(text.splitlines()) > 400]
     functions = (ast.FunctionDef, ast.AsyncFunctionDef)
-    sizes = {
-        node.name: node.end_lineno - node.lineno + 1
+    sizes = [
+        (file, node.name, node.end_lineno - node.lineno + 1)
+        for file, text in texts.items()
         for node in ast.walk(ast.parse(text))
         if isinstance(node, functions)
-    }
-    assert not {name: lines for name, lines in sizes.items() if lines > 50}
+    ]
+    assert not [each for each in sizes if each[-1] > 50]
 
 
 def test_importing_the_package_imports_no_heavy_module():
@@ -156,8 +153,7 @@ def test_importing_the_package_imports_no_heavy_module():
     assert not heavy & set(done.stdout.split())
 
 
-@pytest.mark.parametrize("name", MUTANTS)
-def test_a_bug_to_plant_finds_its_text_and_its_tests(name):
-    mutant = MUTANTS[name]
-    assert mutant.old in (ROOT / mutant.file).read_text(encoding="utf-8")
-    assert all((ROOT / tests).exists() for tests in mutant.tests.split())
+def test_a_bug_to_plant_finds_its_text_and_its_tests():
+    for name, mutant in MUTANTS.items():
+        assert mutant.old in (ROOT / mutant.file).read_text(encoding="utf-8"), name
+        assert all((ROOT / tests).exists() for tests in mutant.tests.split()), name
