@@ -84,8 +84,8 @@ def pytest_collection_modifyitems(config, items):
     if config.getoption("--slow"):
         return
     left = {item for item in items if any(name in item.nodeid for name in SLOW)}
-    if not config.option.keyword and all(Path(each).is_dir() for each in config.args):
-        left |= others_turn(items)  # a file or a name that was asked for is run whole, but for SLOW
+    if not config.option.keyword and all(Path(each).name == "tests" for each in config.args):
+        left |= others_turn(items)  # a folder, file or name that was asked for is run whole
     config.hook.pytest_deselected(items=[item for item in items if item in left])
     items[:] = [item for item in items if item not in left]
 

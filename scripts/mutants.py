@@ -1,11 +1,10 @@
 """Do the tests catch a bug? Each of these is planted in a copy of the tree, one at a time.
 
-    .venv/bin/python scripts/mutants.py            all of them, about ten minutes on two cores
+    .venv/bin/python scripts/mutants.py            all of them, for many minutes
     .venv/bin/python scripts/mutants.py fisher     those whose name contains all words given
 
-Only the tests that should notice a bug are run, of folders with this commit's share of the long
-ones (TURN=N: another). The exit code is 1 if a bug stays unseen, or if a changed sentence fails a
-test.
+Only the tests that should notice a bug are run. The exit code is 1 if a bug stays unseen, or if a
+changed sentence fails a test.
 """
 
 import os
