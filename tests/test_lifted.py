@@ -46,7 +46,7 @@ from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Params, Spec
 
-pytestmark = pytest.mark.turns(4)
+pytestmark = pytest.mark.turns(6)
 
 WORLD = PointMass()
 SPEC = WORLD.spec
