@@ -23,11 +23,10 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.mujoco.body import Body
-from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
+from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.fields import part
 from hybrid_rl.types import EnvState, Spec
 
-ASSET = "cartpole.xml"
 DT = 0.0165  # [s] of a decision
 
 
@@ -37,14 +36,8 @@ class Cartpole(Body):
 
     reward: Literal["cos", "dm_control"] = "cos"
 
-    @property
-    def spec(self) -> Spec:
-        """Observation size, action size and decision interval."""
-        return Spec(obs=5, act=1, dt=DT)
-
-    @property
-    def _body(self) -> Physics:
-        return self._physics(ASSET)
+    spec = Spec(obs=5, act=1, dt=DT)
+    _asset = "cartpole.xml"
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""

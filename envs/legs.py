@@ -25,7 +25,7 @@ from jax import Array
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.body import Body
 from hybrid_rl.envs.mujoco.kinematics import from_axis_angle, inverse, quat_multiply, rotate
-from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
+from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.envs.mujoco.simplified import TIMESTEP, servos, simplified
 from hybrid_rl.fields import NotNegative, part
 from hybrid_rl.types import EnvState, Spec
@@ -55,10 +55,6 @@ class Legs(Body):
     @property
     def _asset(self) -> str:
         return simplified(self.robot)
-
-    @property
-    def _body(self) -> Physics:
-        return self._physics(self._asset)
 
     def reset(self, key: Array) -> EnvState:
         """The robot at home, turned and pushed, with a command."""

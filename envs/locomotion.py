@@ -29,7 +29,7 @@ from jax import Array
 
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.body import Body
-from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
+from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.fields import Positive, part
 from hybrid_rl.types import EnvState, Spec
 
@@ -42,15 +42,6 @@ class Runner(Body):
     dt: ClassVar[float]  # [s] of a decision
     hidden: ClassVar[int]  # coordinates of the root that are not observed: x, or x and y
     spread: ClassVar[float] = 0.1  # [m, rad] largest distance from the upright pose at the start
-
-    @property
-    @abstractmethod
-    def _asset(self) -> str:
-        """The file of the model."""
-
-    @property
-    def _body(self) -> Physics:
-        return self._physics(self._asset)
 
     @abstractmethod
     def _paid(self, data: PhysicsState, control: Array, speed: Array) -> tuple[Array, Array]:

@@ -30,7 +30,7 @@ from jax import Array
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.body import Body
 from hybrid_rl.envs.mujoco.kinematics import inverse, quat_multiply, rotate
-from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
+from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.fields import NotNegative, part
 from hybrid_rl.types import EnvState, Spec
 
@@ -60,8 +60,8 @@ class Quadcopter(Body):
         return Spec(obs=9 if self.task == "hover" else 12, act=4, dt=DT)
 
     @property
-    def _body(self) -> Physics:
-        return self._physics(self.asset)
+    def _asset(self) -> str:
+        return self.asset
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""

@@ -31,6 +31,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from jax import Array
 
+from hybrid_rl.core.batching import where
 from hybrid_rl.envs.gym import time_limit
 from hybrid_rl.envs.mujoco.offscreen import Canvas
 from hybrid_rl.envs.mujoco.scenery import pose_of, scene_of
@@ -223,8 +224,7 @@ def _autoreset_step(
 
     def auto_reset() -> EnvState:
         first = jax.vmap(env.reset)(split[:, 0])
-        pick = jax.vmap(lambda d, a, b: jax.tree.map(lambda x, y: jnp.where(d, x, y), a, b))
-        return pick(done, first, last)
+        return where(done, first, last)
 
     split = jax.vmap(jax.random.split)(keys)
     state = jax.lax.cond(done.any(), auto_reset, lambda: last)

@@ -83,7 +83,7 @@ def test_it_is_equal_by_value_and_its_pose_is_one_of_its_scene(env):
     again = replace(env)
     assert (env, hash(env)) == (again, hash(again))
     model = mjcf.load(scenery.scene_of(env))
-    pose = jax.eval_shape(lambda key: env.pose(env.reset(key)), jax.random.key(0))
+    pose = jax.eval_shape(lambda key: scenery.pose_of(env)(env.reset(key)), jax.random.key(0))
     assert pose.shape == (model.nq,)
     assert model.camera("track").id >= 0
 
