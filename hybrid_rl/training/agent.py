@@ -100,16 +100,12 @@ class Agent:
         """The sizes for what learns and acts, which sees a history of observations."""
         return history.seen(self.spec, self.episode.history)
 
-    def check(self, decisions: int, controllers: Iterable[Controller] = ()) -> None:
-        """Raise ValueError if a part refuses a run of so many decisions; no device is used.
+    def check(self, controllers: Iterable[Controller] = ()) -> None:
+        """Raise ValueError if a part refuses a run; no device is used.
 
         controllers: others that act with what it learns.
         """
         contract.check(self, [self.controller, *controllers])
-        longest = min(decisions, self.episode.steps * self.num_envs)
-        for learner in self.learners.values():
-            if (check := getattr(learner, "check", None)) is not None:
-                check(longest)
         jax.eval_shape(lambda: self.controller.init(self.spec))
         if not self.learners and needs_world(self.controller):  # not every planner can
             jax.eval_shape(lambda: self.step(self.init(jax.random.key(0)), jnp.int32(0)))
