@@ -27,8 +27,6 @@ from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.fields import part
 from hybrid_rl.types import EnvState, Spec
 
-DT = 0.0165  # [s] of a decision
-
 
 @part
 class Cartpole(Body):
@@ -36,8 +34,14 @@ class Cartpole(Body):
 
     reward: Literal["cos", "dm_control"] = "cos"
 
-    spec = Spec(obs=5, act=1, dt=DT)
-    _asset = "cartpole.xml"
+    @property
+    def spec(self) -> Spec:
+        """Observation size, action size and decision interval."""
+        return Spec(obs=5, act=1, dt=0.0165)
+
+    @property
+    def _asset(self) -> str:
+        return "cartpole.xml"
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""

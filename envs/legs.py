@@ -31,7 +31,6 @@ from hybrid_rl.fields import NotNegative, part
 from hybrid_rl.types import EnvState, Spec
 
 STEPS = 5  # physics steps per decision
-DT = STEPS * TIMESTEP  # [s] of a decision
 OFFSET = 0.5  # [rad] of a servo's target from home at a = 1
 COMMANDS = 4  # of an episode
 HOLD = 250  # decisions that each lasts
@@ -50,7 +49,7 @@ class Legs(Body):
     def spec(self) -> Spec:
         """Observation size, action size and decision interval."""
         m = mjcf.load(self._asset).nu
-        return Spec(obs=12 + 3 * m, act=m, dt=DT)
+        return Spec(obs=12 + 3 * m, act=m, dt=STEPS * TIMESTEP)
 
     @property
     def _asset(self) -> str:
