@@ -47,7 +47,7 @@ class Ant(Runner):
     integrator: Literal["rk4", "euler"] = "rk4"  # as Gymnasium; euler, as Brax, costs a quarter
     contacts: Literal["points", "capsules"] = "points"
 
-    steps, dt, hidden = 5, 0.05, 2
+    steps, dt, hidden, gaussian = 5, 0.05, 2, True
 
     @property
     def _asset(self) -> str:

@@ -23,12 +23,9 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.mujoco.body import Body
-from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
+from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.fields import part
 from hybrid_rl.types import EnvState, Spec
-
-ASSET = "cartpole.xml"
-DT = 0.0165  # [s] of a decision
 
 
 @part
@@ -40,11 +37,11 @@ class Cartpole(Body):
     @property
     def spec(self) -> Spec:
         """Observation size, action size and decision interval."""
-        return Spec(obs=5, act=1, dt=DT)
+        return Spec(obs=5, act=1, dt=0.0165)
 
     @property
-    def _body(self) -> Physics:
-        return self._physics(ASSET)
+    def _asset(self) -> str:
+        return "cartpole.xml"
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""

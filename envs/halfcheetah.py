@@ -28,7 +28,7 @@ class HalfCheetah(Runner):
     """Half-cheetah; `physics` is native, mjx, warp or auto."""
 
     reward: Literal["gymnasium", "pybullet"] = "gymnasium"
-    steps, dt, hidden = 5, 0.05, 1
+    steps, dt, hidden, gaussian = 5, 0.05, 1, True
 
     @property
     def _asset(self) -> str:

@@ -20,7 +20,6 @@ Source: Tassa, Erez, Todorov 2012; parameters of Gymnasium's Humanoid-v5.
 
 from typing import Literal
 
-import jax
 import jax.numpy as jnp
 from jax import Array
 
@@ -56,9 +55,6 @@ class Humanoid(Runner):
     @property
     def _body(self) -> Physics:
         return self._physics(self._asset, REWARD_READS + OBSERVATION_READS[self.observation])
-
-    def _start(self, key: Array, size: int) -> Array:
-        return jax.random.uniform(key, (size,), jnp.float32, -self.spread, self.spread)
 
     def _control(self, action: Array) -> Array:
         return LIMIT * action

@@ -25,13 +25,12 @@ from jax import Array
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.body import Body
 from hybrid_rl.envs.mujoco.kinematics import from_axis_angle, inverse, quat_multiply, rotate
-from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
+from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.envs.mujoco.simplified import TIMESTEP, servos, simplified
 from hybrid_rl.fields import NotNegative, part
 from hybrid_rl.types import EnvState, Spec
 
 STEPS = 5  # physics steps per decision
-DT = STEPS * TIMESTEP  # [s] of a decision
 OFFSET = 0.5  # [rad] of a servo's target from home at a = 1
 COMMANDS = 4  # of an episode
 HOLD = 250  # decisions that each lasts
@@ -50,15 +49,11 @@ class Legs(Body):
     def spec(self) -> Spec:
         """Observation size, action size and decision interval."""
         m = mjcf.load(self._asset).nu
-        return Spec(obs=12 + 3 * m, act=m, dt=DT)
+        return Spec(obs=12 + 3 * m, act=m, dt=STEPS * TIMESTEP)
 
     @property
     def _asset(self) -> str:
         return simplified(self.robot)
-
-    @property
-    def _body(self) -> Physics:
-        return self._physics(self._asset)
 
     def reset(self, key: Array) -> EnvState:
         """The robot at home, turned and pushed, with a command."""

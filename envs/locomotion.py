@@ -29,7 +29,7 @@ from jax import Array
 
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.body import Body
-from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
+from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.fields import Positive, part
 from hybrid_rl.types import EnvState, Spec
 
@@ -42,15 +42,7 @@ class Runner(Body):
     dt: ClassVar[float]  # [s] of a decision
     hidden: ClassVar[int]  # coordinates of the root that are not observed: x, or x and y
     spread: ClassVar[float] = 0.1  # [m, rad] largest distance from the upright pose at the start
-
-    @property
-    @abstractmethod
-    def _asset(self) -> str:
-        """The file of the model."""
-
-    @property
-    def _body(self) -> Physics:
-        return self._physics(self._asset)
+    gaussian: ClassVar[bool] = False  # qvel at the start: 0.1 N(0, 1), or uniform as qpos
 
     @abstractmethod
     def _paid(self, data: PhysicsState, control: Array, speed: Array) -> tuple[Array, Array]:
@@ -67,7 +59,11 @@ class Runner(Body):
         key_pos, key_vel = jax.random.split(key)
         upright = jnp.asarray(self._body.model.qpos0, jnp.float32)
         away = jax.random.uniform(key_pos, upright.shape, jnp.float32, -self.spread, self.spread)
-        qvel = self._start(key_vel, self._body.model.nv)
+        size = (self._body.model.nv,)
+        if self.gaussian:
+            qvel = 0.1 * jax.random.normal(key_vel, size, jnp.float32)
+        else:
+            qvel = jax.random.uniform(key_vel, size, jnp.float32, -self.spread, self.spread)
         return self._state(self._body.reset(upright + away, qvel))
 
     def step(self, state: EnvState, action: Array) -> EnvState:
@@ -83,10 +79,6 @@ class Runner(Body):
         """At the start of an episode."""
         zero = jnp.float32(0.0)
         return EnvState(data, self._obs(data), zero, metrics={"speed": zero})
-
-    def _start(self, key: Array, size: int) -> Array:
-        """qvel [size] at the start: 0.1 N(0, 1)."""
-        return 0.1 * jax.random.normal(key, (size,), jnp.float32)
 
     def _control(self, action: Array) -> Array:
         """Controls [m] of an action [m] in [-1, 1]."""
@@ -132,9 +124,6 @@ class PlanarLegs(Runner):
     @property
     def _asset(self) -> str:
         return self.asset
-
-    def _start(self, key: Array, size: int) -> Array:
-        return jax.random.uniform(key, (size,), jnp.float32, -self.spread, self.spread)
 
     def _obs(self, data: PhysicsState) -> Array:
         seen, limit = data.qvel, self.velocity_limit

@@ -147,10 +147,6 @@ class PandaStack:
         back = self.posture * (jnp.asarray(READY, jnp.float32) - data.qpos[:7])
         return damped_inverse(jacobian, twist, self.damping, back)
 
-    def pose(self, state: EnvState) -> Array:
-        """Joint positions qpos [23] for rendering."""
-        return state.data.qpos
-
     def points(self, state: EnvState, obs: Array) -> Array:
         """Positions [T+1, n, 3] [m] along observations [T+1, o] from `state`, for drawing.
 

@@ -30,12 +30,10 @@ from jax import Array
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.body import Body
 from hybrid_rl.envs.mujoco.kinematics import inverse, quat_multiply, rotate
-from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
+from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.fields import NotNegative, part
 from hybrid_rl.types import EnvState, Spec
 
-ASSET = "quadcopter.xml"
-SCENE = "quadcopter_scene.xml"
 DT = 0.005  # [s] of a decision
 MAX_CONTROL = 6.0  # of a motor
 SUCCESS_ERROR = 0.01  # squared error below which the task is solved
@@ -52,7 +50,7 @@ class Quadcopter(Body):
     target_distance: NotNegative = 2.0  # [m] largest in each direction; track only
     target_speed: NotNegative = 0.0  # [m/s] largest in each direction; track only
     wind: float = 0.0  # [m/s^2] acceleration along the world's x axis
-    asset: str = ASSET  # another file needs the same actuators
+    asset: str = "quadcopter.xml"  # another file needs the same actuators
 
     @property
     def spec(self) -> Spec:
@@ -60,8 +58,8 @@ class Quadcopter(Body):
         return Spec(obs=9 if self.task == "hover" else 12, act=4, dt=DT)
 
     @property
-    def _body(self) -> Physics:
-        return self._physics(self.asset)
+    def _asset(self) -> str:
+        return self.asset
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""
@@ -111,7 +109,7 @@ class Quadcopter(Body):
         """
         return {"spin": obs[3:6], "velocity": obs[6:9], "motion": obs[3:9]}
 
-    scene = mjcf.scene(SCENE)
+    scene = mjcf.scene("quadcopter_scene.xml")
 
     def pose(self, state: EnvState) -> Array:
         """Joint positions qpos [10] for rendering: the quadcopter's, then the target's."""

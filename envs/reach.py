@@ -23,7 +23,7 @@ from jax import Array
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.body import Body
 from hybrid_rl.envs.mujoco.kinematics import Chain, inverse, quat_multiply, rotation_vector
-from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
+from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.envs.mujoco.simplified import JOINT, TIMESTEP, servos, simplified
 from hybrid_rl.fields import part
 from hybrid_rl.types import EnvState, Spec
@@ -73,10 +73,6 @@ class Reach(Body):
     @property
     def _asset(self) -> str:
         return tipped(self.robot) if self.site == TIP else simplified(self.robot)
-
-    @property
-    def _body(self) -> Physics:
-        return self._physics(self._asset)
 
     def reset(self, key: Array) -> EnvState:
         """The arm at home, and a pose to reach."""

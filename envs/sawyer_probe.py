@@ -163,10 +163,6 @@ class SawyerProbe:
         """Signed distance [] [m] of s [2] to the nearest surface; `pose` [3] is theta."""
         return self._plane.distance(s, pose)
 
-    def scene(self) -> str:
-        """MJCF text of the scene for rendering."""
-        return self.asset
-
     def points(self, state: EnvState, obs: Array) -> Array:
         """Positions [T+1, 1, 3] [m] of the tip along observations [T+1, 4], for drawing."""
         height = jnp.broadcast_to(TIP.pose(state.data.qpos)[0][2], (len(obs), 1))

@@ -37,7 +37,6 @@ from hybrid_rl.fields import Discount, NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
 
 ASSET = "sawyer_push.xml"
-SCENE = "sawyer_push_scene.xml"
 STEPS = 20  # physics steps per decision
 DT = 0.1  # [s] of a decision
 HOME = (-0.2353359, -0.4019111, 0.0032168, 1.7513965, -0.0631270, 0.1595469, 1.5656103)  # [rad]
@@ -185,7 +184,7 @@ class SawyerPush:
         """The block's position seen from the target, and from the rod [m] at obs [o]."""
         return {"block": obs[2:4] / self.state_scale, "reach": obs[:2] / self.state_scale}
 
-    scene = mjcf.scene(SCENE)
+    scene = mjcf.scene("sawyer_push_scene.xml")
 
     def pose(self, state: EnvState) -> Array:
         """Joint positions qpos [16] for rendering: arm and block, then the target's x and y."""

@@ -49,7 +49,6 @@ NEUTRAL = (0.0, -1.18, 0.0, 2.18, 0.0, 0.57, 3.3161)  # [rad]
 PERIOD = np.pi  # [s]
 BLEND = 1.0  # [s] from the neutral pose to the path
 SOLUTIONS = 128  # in a period; coefficients of the series are below 1e-12 rad from the 20th on
-SCENE = "sawyer_torque_scene.xml"
 STEPS = 5  # physics steps per decision
 DT = 0.01  # [s] of a decision
 LIMITS = (80.0, 80.0, 40.0, 40.0, 9.0, 9.0, 9.0)  # [N m] at a = 1
@@ -102,7 +101,7 @@ class SawyerTorque:
 
     def scene(self) -> str:
         """MJCF text of the scene for rendering, with points along the path."""
-        spec = mujoco.MjSpec.from_file(str(mjcf.path(SCENE)))
+        spec = mjcf.spec("sawyer_torque_scene.xml")
         marks = path(PERIOD / 60 * np.arange(60))
         for mark in marks:
             spec.worldbody.add_site(pos=mark, size=[0.004, 0, 0], rgba=[0.95, 0.6, 0.15, 1])

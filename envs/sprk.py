@@ -37,7 +37,6 @@ from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, Simulator
 from hybrid_rl.fields import NotNegative, Positive, part
 from hybrid_rl.types import EnvState
 
-SLIDING, ROLLING = "sprk.xml", "sprk_rolling.xml"
 SHELL = 2 / 3  # moment of inertia of a shell / (m r^2)
 TIMESTEP = 1 / 300  # [s]
 READINGS, STEPS = 15, 2  # of the touch sensor in a decision; physics steps of a reading
@@ -72,7 +71,7 @@ class Sprk(ContactPlane):
             "MASS": self.mass,
             "INERTIA": SHELL * self.mass * self.radius**2,
         }
-        text = mjcf.text(ROLLING if self.rolling else SLIDING)
+        text = mjcf.text("sprk_rolling.xml" if self.rolling else "sprk.xml")
         for word, value in words.items():
             text = text.replace(word, str(value))
         geoms, pairs = solid(self.objects, "ball", HALF)

@@ -8,7 +8,6 @@ o = (qpos without x and y, qvel) [8]; a: two torques, as fractions of 150 N m; s
 Source: Coulom 2002; parameters of Gymnasium's Swimmer-v5.
 """
 
-import jax
 import jax.numpy as jnp
 from jax import Array
 
@@ -26,9 +25,6 @@ class Swimmer(Runner):
 
     def _paid(self, data: PhysicsState, control: Array, speed: Array) -> tuple[Array, Array]:
         return speed - 1e-4 * (control**2).sum(), jnp.zeros((), bool)
-
-    def _start(self, key: Array, size: int) -> Array:
-        return jax.random.uniform(key, (size,), jnp.float32, -self.spread, self.spread)
 
     def quantities(self, obs: Array) -> dict[str, Array]:
         """Heading [rad], and speed [m/s] at obs [8]."""

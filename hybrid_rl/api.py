@@ -209,7 +209,7 @@ def run_of(
     prepare(config)  # first: a check of the user's world initialises JAX's devices
     check_world(agent.episode.env)
     rounds = -(-counts["total_steps"] // agent.num_envs)
-    agent.check(rounds * agent.num_envs)
+    agent.check()
     sized = replace(agent, replay=agent.replay.within(rounds, agent.num_envs))
     run = Run(config, sized, {"full": agent.controller.greedy()})
     if run_dir is not None and checkpoint.steps(Path(run_dir) / "checkpoints"):

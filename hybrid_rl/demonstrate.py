@@ -28,11 +28,8 @@ from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import CONFIG_DIR, MODE, Argument, flag, output, read, whole
 from hybrid_rl.data.demonstrations import save
 from hybrid_rl.errors import UsageError
-from hybrid_rl.protocols import Controller
 from hybrid_rl.run.recording import record, save_policy, scripted_expert
 from hybrid_rl.run.saved import load
-from hybrid_rl.training.episode import Episode
-from hybrid_rl.types import Params
 
 ARGUMENTS = (
     Argument("task", "", "a task with a scripted expert"),
@@ -64,7 +61,12 @@ def main() -> None:
     out, episodes, seed = given["out"], given["episodes"], given["seed"]
     if out:
         output("out", out, (".npz",))
-    task, world, controller, params = _expert(given, changes)
+    if task := given["task"]:
+        world, controller, params = scripted_expert(given, changes)
+    else:
+        run = load(Path(given["run"]))
+        task, world = run.task, run.episode
+        controller, params = run.learner(mode=given["mode"], world=True)
     if not out:
         Path("demonstrations").mkdir(exist_ok=True)
     out = output("out", out or f"demonstrations/{task}.npz", (".npz",))
@@ -76,16 +78,6 @@ def main() -> None:
     if recording.success is not None:
         line += f", {int(recording.success.sum())} succeeded"
     print(line)
-
-
-def _expert(
-    given: dict[str, Any], changes: dict[str, str]
-) -> tuple[str, Episode, Controller, Params]:
-    """(task, episode, controller, parameters) that the arguments name."""
-    if given["task"]:
-        return given["task"], *scripted_expert(given, changes)
-    run = load(Path(given["run"]))
-    return run.task, run.episode, *run.learner(mode=given["mode"], world=True)
 
 
 def _write_policy(given: dict[str, Any]) -> None:

@@ -11,7 +11,7 @@ import json
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
+from typing import Any, cast
 
 import jax
 import jax.numpy as jnp
@@ -121,7 +121,9 @@ def rows(trained: Trained) -> dict[str, Any]:
         **{f"policy times {factor}": Times(policy, factor) for factor in FACTORS},
         "planner: noise": sampling(proposal=noise, horizon=15, samples=128),
         "planner: gradient": alone,
-        "both: mixture": sampling(proposal=MixtureProposal(own, noise), horizon=15, samples=128),
+        "both: mixture": sampling(
+            proposal=cast(Any, MixtureProposal(own, noise)), horizon=15, samples=128
+        ),
         "both: strengths": sampling(proposal=scaled, horizon=20, samples=96, execute="best"),
         "both: gradient": both,
         **{name: Watched(both, metric) for name, metric in SIGNALS.items()},

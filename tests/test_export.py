@@ -201,17 +201,6 @@ def test_the_node_of_the_how_to_publishes_only_what_a_fresh_observation_gives(mo
     np.testing.assert_allclose([row[0] for row in sent], [0, 0.1, 0, 0], atol=1e-6)
 
 
-def test_a_state_of_several_types_comes_back():
-    state = {"a": jnp.array([1.5, -jnp.inf]), "b": jnp.array(True), "c": jnp.arange(-2, 4)}
-    words = exported._words(state)
-    assert (words.shape, words.dtype) == ((9,), jnp.uint32)
-    for got, want in zip(
-        jax.tree.leaves(exported._tree(words, state)), jax.tree.leaves(state), strict=True
-    ):
-        np.testing.assert_array_equal(got, want)
-        assert got.dtype == want.dtype
-
-
 @pytest.mark.parametrize(
     ("given", "line"),
     [

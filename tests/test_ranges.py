@@ -218,7 +218,6 @@ TOGETHER = [  # what is made, and how the line begins, behind the name of the pa
         lambda: WeightedSum(TERMS, ONES, {"a": 0.9}).reward_to_go(Params(), None),
         "needs constant weights",
     ),
-    (lambda: World(CART).start(Params()), "model=world: "),
     (lambda: World(CART).step((), jnp.zeros(2), jnp.zeros(1)), "needs a planner that samples"),
     (lambda: Monomials((0, 4)).init(KEY, SPEC), r"coordinates=\[0, 4\]: .* entries 0 to 1"),
     (lambda: Monomials(terms=((0, 4),)).init(KEY, SPEC), r"terms=\[0, 4\]: "),

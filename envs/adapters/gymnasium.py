@@ -13,7 +13,7 @@ With Stable-Baselines3 on a CPU call `torch.set_num_threads(1)` first: on two bu
 of its SAC took 4 s with one thread and 70 s with two.
 
 Each array that enters or leaves a compiled function costs about 2 us, more than a small environment
-needs for a step. So a state is packed in one array per dtype between the calls of a single one.
+needs for a step. So a state is packed in one array between the calls of a single one.
 
 Source: Gymnasium's documentation, "Env", "VectorEnv".
 """
@@ -31,6 +31,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from jax import Array
 
+from hybrid_rl.core.batching import of_words, where, words
 from hybrid_rl.envs.gym import time_limit
 from hybrid_rl.envs.mujoco.offscreen import Canvas
 from hybrid_rl.envs.mujoco.scenery import pose_of, scene_of
@@ -38,7 +39,6 @@ from hybrid_rl.files.targets import part_class
 from hybrid_rl.protocols import Env
 from hybrid_rl.types import EnvState
 
-Packed = dict[str, Array]  # dtype -> all entries of a state that have it; flags are float32
 Info = dict[str, Any]
 FLAG = "success"  # the metric that is yes or no
 
@@ -68,11 +68,24 @@ def _spaces(env: Env) -> tuple[Box, Box]:
 
 @cache
 def _programs(env: Env) -> tuple[EnvState, Callable, Callable, Callable]:
-    """Shapes of a state; reset and step on packed states, and `unpack`, for all equal `env`."""
+    """Shapes of a state; reset and step on packed states, and their inverse, for all equal `env`.
+
+    A packed state begins with what the host needs, in float32: obs, reward, terminated, metrics.
+    """
     like = jax.eval_shape(env.reset, jax.random.key(0))
-    reset = jax.jit(lambda seed: pack(env.reset(jax.random.key(seed)), like))
-    step = jax.jit(lambda packed, action: pack(env.step(unpack(packed, like), action), like))
-    return like, reset, step, jax.jit(partial(unpack, like=like))
+
+    def pack(state: EnvState) -> Array:
+        metrics = [state.metrics[name] for name in like.metrics]
+        shown = jax.tree.map(jnp.float32, [state.obs, state.reward, state.terminated, *metrics])
+        same = jax.tree.map(lambda old, leaf: jnp.asarray(leaf, old.dtype), like, state)
+        return words((shown, same))
+
+    def unpack(packed: Array) -> EnvState:
+        return of_words(packed[like.obs.size + 2 + len(like.metrics) :], like)
+
+    reset = jax.jit(lambda seed: pack(env.reset(jax.random.key(seed))))
+    step = jax.jit(lambda packed, action: pack(env.step(unpack(packed), action)))
+    return like, reset, step, jax.jit(unpack)
 
 
 class GymnasiumEnv(gymnasium.Env):
@@ -90,7 +103,7 @@ class GymnasiumEnv(gymnasium.Env):
         self.metadata = {**self.metadata, "render_fps": round(1 / env.spec.dt)}
         self.observation_space, self.action_space = _spaces(env)
         self._like, self._reset, self._step, self._unpacked = _programs(env)
-        self._packed: Packed  # from the first reset on
+        self._packed: Array  # from the first reset on
         self._canvas: Canvas | None = None
 
     @property
@@ -98,10 +111,10 @@ class GymnasiumEnv(gymnasium.Env):
         """The state, as `env.step` takes it."""
         return self._unpacked(self._packed)
 
-    def _read(self, packed: Packed) -> tuple[np.ndarray, float, bool, Info]:
+    def _read(self, packed: Array) -> tuple[np.ndarray, float, bool, Info]:
         """Observation [o], reward, terminated, metrics by name."""
         o = self._spec.obs
-        outcome = np.asarray(packed["float32"])[: o + 2 + len(self._like.metrics)]
+        outcome = np.asarray(packed)[: o + 2 + len(self._like.metrics)].view(np.float32)
         reward, terminated, *metrics = outcome[o:].tolist()
         info = dict(zip(self._like.metrics, metrics, strict=True))
         if FLAG in info:
@@ -167,15 +180,10 @@ class GymnasiumVectorEnv(VectorEnv):
         self, *, seed: int | Sequence[int] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.ndarray, Info]:
         """Initial observations [E, o], and metrics. With one seed, environment i gets seed + i."""
-        first = seed if seed is None or isinstance(seed, int) else int(seed[0])
-        super().reset(seed=first)
-        if seed is None:
-            seeds = self.np_random.integers(2**31, size=self.num_envs)
-        elif isinstance(seed, int):
-            seeds = seed + np.arange(self.num_envs)
-        else:
-            seeds = np.asarray(seed)
-        keys = jax.vmap(lambda s: jax.random.split(jax.random.key(s)))(seeds)
+        each = seed + np.arange(self.num_envs) if isinstance(seed, int) else seed
+        super().reset(seed=None if each is None else int(each[0]))
+        seeds = self.np_random.integers(2**31, size=self.num_envs) if each is None else each
+        keys = jax.vmap(lambda s: jax.random.split(jax.random.key(s)))(np.asarray(seeds))
         state = self._reset(keys[:, 0])
         self._carry = state, keys[:, 1], jnp.zeros(self.num_envs, jnp.int32)
         return np.array(state.obs), _infos(state, np.ones(self.num_envs, bool))
@@ -223,40 +231,9 @@ def _autoreset_step(
 
     def auto_reset() -> EnvState:
         first = jax.vmap(env.reset)(split[:, 0])
-        pick = jax.vmap(lambda d, a, b: jax.tree.map(lambda x, y: jnp.where(d, x, y), a, b))
-        return pick(done, first, last)
+        return where(done, first, last)
 
     split = jax.vmap(jax.random.split)(keys)
     state = jax.lax.cond(done.any(), auto_reset, lambda: last)
     keys = jnp.where(done, split[:, 1], keys)
     return (state, keys, jnp.where(done, 0, count)), last, truncated
-
-
-def outcome(state: EnvState, like: EnvState) -> Array:
-    """What the host needs of a state [o + 2 + metrics]: obs, reward, terminated, metrics."""
-    numbers = (state.reward, state.terminated, *(state.metrics[name] for name in like.metrics))
-    flat = [jnp.asarray(x, jnp.float32).reshape(1) for x in numbers]
-    return jnp.concatenate((jnp.asarray(state.obs, jnp.float32), *flat))
-
-
-def pack(state: EnvState, like: EnvState) -> Packed:
-    """`state` with the shapes and dtypes of `like`; float32 begins with `outcome`."""
-    parts = {"float32": [outcome(state, like)]}
-    for leaf, old in zip(jax.tree.leaves(state), jax.tree.leaves(like), strict=True):
-        leaf = jnp.asarray(leaf, old.dtype).reshape(old.size)
-        leaf = leaf.astype(jnp.float32) if old.dtype == bool else leaf
-        parts.setdefault(str(leaf.dtype), []).append(leaf)
-    return {kind: jnp.concatenate(own) for kind, own in parts.items()}
-
-
-def unpack(packed: Packed, like: EnvState) -> EnvState:
-    """The state that `pack` packed."""
-    used = {"float32": like.obs.size + 2 + len(like.metrics)}
-    leaves = []
-    for old in jax.tree.leaves(like):
-        kind = "float32" if old.dtype == bool else str(old.dtype)
-        begin = used.get(kind, 0)
-        used[kind] = end = begin + old.size
-        leaf = packed[kind][begin:end].reshape(old.shape)
-        leaves.append(leaf.astype(bool) if old.dtype == bool else leaf)
-    return jax.tree.unflatten(jax.tree.structure(like), leaves)

@@ -49,14 +49,10 @@ class CartPendulum(Euclidean):
         """A random initial observation [4]."""
         return jax.random.uniform(key, (4,), jnp.float32, -self.start, self.start)
 
-    def step(self, state: EnvState, action: Array) -> EnvState:
-        """The state after one decision. action: [1] in [-1, 1]."""
-        after = super().step(state, action)
-        return after.replace(terminated=after.metrics["success"] == 0)
-
     def _state(self, x: Array, reward: Array, info: dict[str, Array]) -> EnvState:
         inside = (jnp.abs(x[0]) < self.angle_limit) & (jnp.abs(x[1]) < self.position_limit)
-        return fully_observed(x, reward).replace(metrics={"success": inside.astype(jnp.float32)})
+        metrics = {"success": inside.astype(jnp.float32)}
+        return fully_observed(x, reward, ~inside).replace(metrics=metrics)
 
     def reward_of(self, x: Array, u: Array, after: Array) -> Array:
         """The reward [] of action u [1] at x [4], which led to `after` [4]."""

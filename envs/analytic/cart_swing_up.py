@@ -19,8 +19,8 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.envs.analytic.cart_pendulum import CartPendulum
 from hybrid_rl.envs.analytic.state import Euclidean, fully_observed
-from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.fields import NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
 
@@ -72,9 +72,7 @@ class CartSwingUp(Euclidean):
             x = x + DT * rate
         return x
 
-    def scene(self) -> str:
-        """MJCF text of the scene for rendering."""
-        return mjcf.text("cart_pendulum.xml").replace("0 0 0 0 0 0.6", f"0 0 0 0 0 {self.length}")
+    scene = CartPendulum.scene
 
     def pose(self, state: EnvState) -> Array:
         """Position of the cart and angle of the rod, qpos [2], for rendering."""

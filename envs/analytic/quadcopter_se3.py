@@ -58,7 +58,8 @@ class QuadcopterSE3:
         x = x.at[:3].set(p).at[12:].set(twist)
         if self.turn:
             angles = jax.random.uniform(jax.random.fold_in(key, 2), (3,), jnp.float32, -1, 1)
-            x = x.at[3:12].set(_rotation(self.turn * angles).reshape(9))
+            about_x, about_y, about_z = map(_turned, jnp.eye(3), self.turn * angles)
+            x = x.at[3:12].set((about_z @ about_y @ about_x).reshape(9))
         state = fully_observed(x, jnp.float32(0.0))
         if self._faulty:
             state = state.replace(info={CLOCK: jnp.zeros((), jnp.int32)})
@@ -150,12 +151,6 @@ def _metrics(x: Array, u: Array) -> dict[str, Array]:
         "norm_of_u": jnp.linalg.norm(u),
         "twist": jnp.sum(x[12:] ** 2),
     }
-
-
-def _rotation(angles: Array) -> Array:
-    """R_z R_y R_x [3, 3] of the Euler angles [3] about x, y and z."""
-    (a, b, c), (x, y, z) = angles, jnp.eye(3)
-    return _turned(z, c) @ _turned(y, b) @ _turned(x, a)
 
 
 def _turned(axis: Array, angle: Array) -> Array:

@@ -12,7 +12,9 @@ default, is no integral. With the exact model the loop of computed torque is sta
 Source: Siciliano et al. 2009, "Robotics", section 8.5 (inverse dynamics control, PD control).
 """
 
-from typing import Annotated
+from abc import ABC, abstractmethod
+from dataclasses import KW_ONLY
+from typing import Annotated, Self
 
 import jax.numpy as jnp
 from jax import Array
@@ -28,12 +30,18 @@ Arm = Annotated[SawyerTorque, IS_ARM]
 
 
 @part
-class ComputedTorque:
-    """Feedback linearisation of `sawyer_torque`."""
+class Feedback(ABC):
+    """What both share: the errors of `sawyer_torque` and their integral."""
 
     world: Arm
-    frequency: Positive = 20.0  # [rad/s] w of the errors
+    _: KW_ONLY
     integral: NotNegative = 0.0  # [1/s] k
+
+    @abstractmethod
+    def torques(
+        self, q: Array, rate: Array, error: Array, rate_ref: Array, rate_next: Array
+    ) -> Array:
+        """Torques [7] [N m] at q and q' [7], for e + k z and the rates of the reference [7]."""
 
     def init(self, spec: Spec) -> Array:
         """z [7] = 0."""
@@ -42,52 +50,42 @@ class ComputedTorque:
     def act(
         self, params: Params, state: Array, obs: Array, key: Array
     ) -> tuple[Array, Array, dict[str, Array]]:
-        """Action [7], the next z [7], no metrics; deterministic."""
+        """Action [7], within its limits, the next z [7], no metrics; deterministic."""
         q, rate, q_ref, rate_ref, _, rate_next = jnp.split(obs, 6)
-        error, state = _integrated(q_ref - q, state, self.integral)
-        feedback = self.frequency**2 * error + 2 * self.frequency * (rate_ref - rate)
-        acceleration = (rate_next - rate_ref) / DT + feedback
-        model = sawyer_torque.asset(self.world.damping)
-        return _action(kinematics.torques(model, q, rate, acceleration)), state, {}
+        error = q_ref - q
+        z = state + DT * error
+        torques = self.torques(q, rate, error + self.integral * z, rate_ref, rate_next)
+        return jnp.clip(torques / jnp.array(LIMITS), -1.0, 1.0), z, {}
 
-    def greedy(self) -> "ComputedTorque":
+    def greedy(self) -> Self:
         """This controller, which does not explore."""
         return self
 
 
 @part
-class JointPD:
+class ComputedTorque(Feedback):
+    """Feedback linearisation of `sawyer_torque`."""
+
+    frequency: Positive = 20.0  # [rad/s] w of the errors
+
+    def torques(
+        self, q: Array, rate: Array, error: Array, rate_ref: Array, rate_next: Array
+    ) -> Array:
+        """Of the model, for the reference's acceleration and that by which the errors vanish."""
+        feedback = self.frequency**2 * error + 2 * self.frequency * (rate_ref - rate)
+        acceleration = (rate_next - rate_ref) / DT + feedback
+        return kinematics.torques(sawyer_torque.asset(self.world.damping), q, rate, acceleration)
+
+
+@part
+class JointPD(Feedback):
     """Proportional and derivative feedback at each joint of `sawyer_torque`."""
 
-    world: Arm
     stiffness: tuple[NotNegative, ...] = (400.0, 400.0, 200.0, 200.0, 40.0, 20.0, 10.0)  # [N m/rad]
     damping: tuple[NotNegative, ...] = (40.0, 40.0, 20.0, 20.0, 4.0, 2.0, 1.0)  # [N m s/rad]
-    integral: NotNegative = 0.0  # [1/s] k
 
-    def init(self, spec: Spec) -> Array:
-        """z [7] = 0."""
-        return jnp.zeros(spec.act)
-
-    def act(
-        self, params: Params, state: Array, obs: Array, key: Array
-    ) -> tuple[Array, Array, dict[str, Array]]:
-        """Action [7], the next z [7], no metrics; deterministic."""
-        q, rate, q_ref, rate_ref, *_ = jnp.split(obs, 6)
-        error, state = _integrated(q_ref - q, state, self.integral)
-        stiffness, damping = jnp.array(self.stiffness), jnp.array(self.damping)
-        return _action(stiffness * error + damping * (rate_ref - rate)), state, {}
-
-    def greedy(self) -> "JointPD":
-        """This controller, which does not explore."""
-        return self
-
-
-def _integrated(error: Array, z: Array, k: float) -> tuple[Array, Array]:
-    """e + k z [7], and the next z [7], of the error e [7] [rad]."""
-    z = z + DT * error
-    return error + k * z, z
-
-
-def _action(torques: Array) -> Array:
-    """The action [7] that gives these torques [7] [N m], within their limits."""
-    return jnp.clip(torques / jnp.array(LIMITS), -1.0, 1.0)
+    def torques(
+        self, q: Array, rate: Array, error: Array, rate_ref: Array, rate_next: Array
+    ) -> Array:
+        """Of springs and dampers."""
+        return jnp.array(self.stiffness) * error + jnp.array(self.damping) * (rate_ref - rate)

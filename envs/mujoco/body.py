@@ -12,12 +12,10 @@ same one; other values are part of its name (`mjcf`), so they hold in MuJoCo C, 
 from abc import ABC, abstractmethod
 from dataclasses import KW_ONLY
 
-from jax import Array
-
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.physics import Physics, Simulator
 from hybrid_rl.fields import FieldError, NotNegative, Positive, part
-from hybrid_rl.types import EnvState, Spec
+from hybrid_rl.types import Spec
 
 
 @part
@@ -41,9 +39,14 @@ class Body(ABC):
     def spec(self) -> Spec:
         """Observation size, action size and decision interval."""
 
-    def pose(self, state: EnvState) -> Array:
-        """Joint positions qpos [nq] for rendering."""
-        return state.data.qpos
+    @property
+    @abstractmethod
+    def _asset(self) -> str:
+        """The model, whose first m actuators are the motors."""
+
+    @property
+    def _body(self) -> Physics:
+        return self._physics(self._asset)
 
     @property
     def _motors(self) -> tuple[float, ...]:
@@ -52,7 +55,7 @@ class Body(ABC):
         return (self.motors,) * self.spec.act if one else self.motors
 
     def _physics(self, asset: str, reads: tuple[str, ...] = ()) -> Physics:
-        """The physics of `asset`, whose first m actuators are the motors, with the changes."""
+        """The physics of `asset`, with the changes."""
         factors = {"mass": self.mass, "friction": self.friction}
         factors |= {f"motor.{i}": factor for i, factor in enumerate(self._motors)}
         values = {key: factor for key, factor in factors.items() if factor != 1}

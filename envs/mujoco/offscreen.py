@@ -15,7 +15,6 @@ import subprocess
 import sys
 import weakref
 from functools import cache
-from typing import Any
 
 import mujoco
 import numpy as np
@@ -63,8 +62,10 @@ def chosen() -> tuple[str, str]:
         return "cgl", ""
     requested = os.environ.get("MUJOCO_GL", "").strip().lower()
     tried = (requested,) if requested in BACKENDS else BACKENDS
+    clean = {key: value for key, value in os.environ.items() if key != "PYOPENGL_PLATFORM"}
     for name in tried:
-        done = _trial(name)
+        run, env = [sys.executable, "-c", TRIAL.format(backend=name)], {**clean, "MUJOCO_GL": name}
+        done = subprocess.run(run, env=env, capture_output=True, text=True)
         if done.returncode == 0:
             return name, done.stdout
     raise NoGraphicsError(
@@ -80,13 +81,6 @@ def lend() -> None:
         from mujoco.rendering.classic import gl_context  # which reads MUJOCO_GL
 
         mujoco.GLContext = importlib.reload(gl_context).GLContext
-
-
-def _trial(name: str) -> Any:
-    """The finished process of a trial with one backend."""
-    clean = {key: value for key, value in os.environ.items() if key != "PYOPENGL_PLATFORM"}
-    run = [sys.executable, "-c", TRIAL.format(backend=name)]
-    return subprocess.run(run, env={**clean, "MUJOCO_GL": name}, capture_output=True, text=True)
 
 
 class Canvas:
@@ -125,8 +119,6 @@ class Canvas:
 
     def draw(self, qpos: np.ndarray) -> np.ndarray:
         """The image [height, width, 3] (uint8) at joint positions qpos [nq]."""
-        if np.shape(qpos) != (self.model.nq,):
-            raise ValueError(f"qpos is {np.shape(qpos)}; the scene takes [{self.model.nq}]")
         self._window.make_current()
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, self._context)
         self._data.qpos[:] = qpos

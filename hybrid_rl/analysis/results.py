@@ -190,22 +190,6 @@ def short(differing: Sequence[Mapping[str, str]]) -> list[str]:
     return [chr(ord("A") + n % 26) + str(n // 26 or "") for n in numbers]  # ..., Z, A1, B1, ...
 
 
-def labels(folders: list[Path]) -> list[str]:
-    """The method of each run, with the settings in which its runs differ, or else its folder."""
-    runs = [RunFolder(folder) for folder in folders]
-    algos = [run.word("algo") for run in runs]
-    result = [""] * len(runs)
-    for algo in set(algos):
-        group = [i for i, other in enumerate(algos) if other == algo]
-        words = short(differences([runs[i] for i in group]))
-        for i, more in zip(group, words, strict=True):
-            result[i] = f"{algo} {more}".strip() if "=" in more or not more else folders[i].name
-    return [
-        label if result.count(label) == 1 else str(folder)
-        for label, folder in zip(result, folders, strict=True)
-    ]
-
-
 def _ending(key: str, keys: Sequence[str]) -> str:
     """The fewest last names of `key` that no other of the keys ends with."""
     names = key.split(".")

@@ -1,4 +1,4 @@
-"""The style of all pictures: colours, legends, notes, tick labels, and points in rows."""
+"""The style of all pictures: colours, legends, notes and tick labels."""
 
 import itertools
 import math
@@ -10,10 +10,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-from collections.abc import Mapping
 
-ROW_WIDTH = 34  # [characters] of a line of the name of a row of points
-ROW_HEIGHT = 0.34  # [in]
 COLOURS = (  # Okabe and Ito, wine of Tol: distinct for colour-blind readers, too
     "#0072B2",
     "#D55E00",
@@ -226,38 +223,3 @@ def plain_log(axis: Any, narrow: bool = False) -> None:
 def thousands(value: float, _: int | None = None) -> str:
     """-12,500 or 0.25, with a true minus sign."""
     return f"{value:,.10g}".replace("-", "\N{MINUS SIGN}")
-
-
-def row_points(
-    axes: Any, spreads: Mapping[str, Any], marks: Sequence[str] = (), entries: Iterable[str] = ()
-) -> None:
-    """A row for each label, of K points with their bands, [K, 3]; the later a point, the fuller.
-
-    marks: what the K points are, for a legend that the caller draws.
-    entries: names of the rows instead of the labels.
-    """
-    own, most = colours(spreads), max(map(len, spreads.values()))
-    for row, (label, each) in enumerate(spreads.items()):
-        colour = own[label]
-        for k, (middle, low, high) in enumerate(each):
-            y = row + 0.7 * ((k + 0.5) / most - 0.5)
-            axes.plot([low, high], [y, y], color=colour, lw=1.2, zorder=2)
-            axes.plot(middle, y, "o", ms=4.5, **_face(colour, k, most))
-    for k, mark in enumerate(marks):
-        axes.plot([], [], "o", ms=4.5, label=mark, **_face(BLACK, k, len(marks)))
-    name_rows(axes, entries or map(words, spreads))
-
-
-def _face(colour: str, k: int, most: int) -> dict[str, Any]:
-    """The k-th of `most` points: from white to its colour."""
-    from matplotlib.colors import to_rgb
-
-    share = (k + 1) / most if most != 2 else k  # of two, one is white
-    return {"color": colour, "mfc": [1 - share * (1 - part) for part in to_rgb(colour)]}
-
-
-def name_rows(axes: Any, entries: Iterable[str]) -> None:
-    """The names of the rows, the first one above."""
-    names = [textwrap.fill(entry, ROW_WIDTH) for entry in entries]
-    axes.set_yticks(range(len(names)), names)
-    axes.set_ylim(len(names) - 0.5, -0.5)

@@ -129,7 +129,9 @@ def jitter(frame: poses.Frame, evidence: Evidence, cloud: Cloud, key: Array) -> 
     shifting, moving = jax.random.split(key)
     first = resampled(cloud, shifting)
     noise = jnp.array([NOISE]) * jax.random.normal(moving, first.theta.shape)
-    theta, good = _bounded(frame, first.theta + noise, first.theta)
+    theta = first.theta + noise
+    good = jax.vmap(poses.inside, (None, 0))(frame, theta)
+    theta = jnp.where(good[:, None], theta.at[:, 2].set(poses.wrap(theta[:, 2])), first.theta)
     return Cloud(theta, first.log_w, jax.vmap(evidence.log_like)(theta)), good.mean()
 
 
@@ -185,13 +187,6 @@ def _bandwidths(theta: Array, w: Array) -> Array:
     turn = jnp.minimum(-2 * jnp.log(jnp.maximum(length, 1e-6)), jnp.pi**2 / 3)
     scott = len(theta) ** (-2 / 7)
     return jnp.sqrt(scott * jnp.append(plane, turn) + jnp.array(NOISE) ** 2)
-
-
-def _bounded(frame: poses.Frame, new: Array, old: Array) -> tuple[Array, Array]:
-    """new [N, 3] where the prior allows it, else old; which [N] are new."""
-    good = jax.vmap(poses.inside, (None, 0))(frame, new)
-    new = new.at[:, 2].set(poses.wrap(new[:, 2]))
-    return jnp.where(good[:, None], new, old), good
 
 
 class Particles(NamedTuple):
@@ -329,14 +324,6 @@ class PoseParticles:
         expected = (p.mean(0) > 0.5).astype(p.dtype)[None]
         log_w = jax.nn.log_softmax(log_chance(p, expected, self.trust).sum(1))
         return jnp.log(float(self.subset)) + jnp.sum(jnp.exp(log_w) * log_w)
-
-    def check(self, measurements: int) -> None:
-        """Raise ValueError if so many measurements do not fit into the memory."""
-        if measurements > self.capacity:
-            raise ValueError(
-                f"belief.capacity={self.capacity}: an episode has {measurements} measurements, and "
-                "poses need all of them"
-            )
 
     def informed(self, state: Particles) -> Array:
         """[] bool: whether any measurement was 1."""

@@ -14,7 +14,7 @@ decision on; any other objective weighs all of them by J (Williams et al. 2017).
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from typing import Any, Literal, cast
+from typing import Any, Literal
 
 import jax
 import jax.numpy as jnp
@@ -116,20 +116,14 @@ class SamplingController:
         """
         if self.policy is None or isinstance(x, EnvState):
             return {}
-        compare = partial(self._comparison, params, x, plan, to_go)
-        decisions = params.decisions
+        step, policy = partial(self.model.step, params.model), self.policy
+        given = step, policy, params, lambda path: to_go(path)[0], x, plan[0], self.horizon
+        compare, decisions = partial(adjoint.agreement, *given), params.decisions
         if self.agreement_every == 1 or decisions is None:
             return compare()
         nothing = jax.tree.map(lambda m: jnp.full(m.shape, jnp.nan), jax.eval_shape(compare))
         due = jnp.asarray(decisions) % self.agreement_every == 0
         return jax.lax.cond(due, compare, lambda: nothing)
-
-    def _comparison(self, params: Params, x: Array, plan: Array, to_go: ToGo) -> dict[str, Array]:
-        """The metrics of `_agreement`."""
-        step, policy = partial(self.model.step, params.model), cast(Policy, self.policy)
-        return adjoint.agreement(
-            step, policy, params, lambda path: to_go(path)[0], x, plan[0], self.horizon
-        )
 
     def greedy(self) -> "SamplingController":
         """The controller that executes the weighted mean, or the best candidate."""

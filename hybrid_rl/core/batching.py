@@ -1,10 +1,11 @@
-"""Trees of arrays with a leading axis of members: repeat, join, choose, and change if needed."""
+"""Trees of arrays with a leading axis of members: repeat, join, choose, change, pack."""
 
 from collections.abc import Callable
 from typing import Any
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jax import Array
 from jax.custom_batching import custom_vmap
 
@@ -62,3 +63,33 @@ def when_any(needs: Callable[[Any], Array], change: Change) -> Change:
         return after, jax.tree.map(lambda _: True, after)
 
     return branch
+
+
+def _bits(leaf: Any) -> Array:
+    """Numbers of 32 bits, bool or keys as uint32."""
+    leaf = jnp.asarray(leaf)
+    if jnp.issubdtype(leaf.dtype, jax.dtypes.prng_key):
+        return jax.random.key_data(leaf)
+    leaf = leaf.astype(jnp.uint32) if leaf.dtype == bool else leaf
+    return jax.lax.bitcast_convert_type(leaf, jnp.uint32)
+
+
+def words(tree: Any) -> Array:
+    """The leaves of 32 bits, bool or keys, one after the other, as uint32 [w]."""
+    return jnp.concatenate([_bits(leaf).ravel() for leaf in jax.tree.leaves(tree)])
+
+
+def of_words(given: Array, like: Any) -> Any:
+    """The inverse of `words`, for a tree of the shapes and types of `like`."""
+    like, shapes = jax.eval_shape(lambda tree: (tree, jax.tree.map(_bits, tree)), like)
+    ends = np.cumsum([bits.size for bits in jax.tree.leaves(shapes)])[:-1]
+    parts = jax.tree.unflatten(jax.tree.structure(like), jnp.split(given, ends))
+
+    def one(leaf: Any, bits: Any, part: Array) -> Array:
+        part = part.reshape(bits.shape)
+        if jnp.issubdtype(leaf.dtype, jax.dtypes.prng_key):
+            return jax.random.wrap_key_data(part)
+        same = leaf.dtype != bool
+        return jax.lax.bitcast_convert_type(part, leaf.dtype) if same else part != 0
+
+    return jax.tree.map(one, like, shapes, parts)

@@ -1,10 +1,11 @@
 """Decay: of exploration and learning rates along a run, and of the weights of layers."""
 
+from functools import partial
 from typing import Any
 
-import jax
 import optax
 from jax import Array
+from jax.tree_util import tree_map_with_path
 
 from hybrid_rl.protocols import Schedule
 
@@ -34,11 +35,5 @@ def adamw(learning_rate: Any, weight_decay: float) -> optax.GradientTransformati
     """
     if not weight_decay:
         return optax.adam(learning_rate)
-    return optax.adamw(learning_rate, weight_decay=weight_decay, mask=_matrices)
-
-
-def _matrices(params: Any) -> Any:
-    """Which leaves are matrices of layers."""
-    return jax.tree_util.tree_map_with_path(
-        lambda path, _: getattr(path[-1], "key", None) == "kernel", params
-    )
+    is_matrix = partial(tree_map_with_path, lambda path, _: getattr(path[-1], "key", 0) == "kernel")
+    return optax.adamw(learning_rate, weight_decay=weight_decay, mask=is_matrix)

@@ -38,16 +38,7 @@ ParametricStep = Callable[[Any, Array, Array], Array]  # theta, x [n], u [m] -> 
 def jacobian(f: Callable[[Any], Array], theta: Any) -> Array:
     """df / dtheta [n, P] of f(theta) [n], with the leaves of theta concatenated."""
     flat, unravel = ravel_pytree(theta)
-    y, pull = jax.vjp(lambda flat: f(unravel(flat)), flat)
-    return jax.vmap(pull)(jnp.eye(y.size, dtype=y.dtype))[0]
-
-
-def jacobians(step: ParametricStep, theta: Any, x: Array, u: Array) -> tuple[Array, Array]:
-    """f_x [n, n] and f_theta [n, P] at x [n], u [m]."""
-    flat, unravel = ravel_pytree(theta)
-    y, pull = jax.vjp(lambda flat, x: step(unravel(flat), x, u), flat, x)
-    f_theta, f_x = jax.vmap(pull)(jnp.eye(y.size, dtype=y.dtype))
-    return f_x, f_theta
+    return jax.jacrev(lambda flat: f(unravel(flat)))(flat)
 
 
 def along(step: ParametricStep, theta: Any, path: Path, kind: str) -> Array:
@@ -57,13 +48,16 @@ def along(step: ParametricStep, theta: Any, path: Path, kind: str) -> Array:
         one = jax.vmap(lambda x, u: jacobian(lambda theta: step(theta, x, u), theta))
         return one(path.x[:-1], path.u)
 
+    flat, unravel = ravel_pytree(theta)
+
     def forward(psi: Array, at: tuple[Array, Array]) -> tuple[Array, Array]:
-        f_x, f_theta = jacobians(step, theta, *at)
+        f = jax.jacrev(lambda flat, x, u: step(unravel(flat), x, u), (0, 1))
+        f_theta, f_x = f(flat, *at)
         psi = jnp.clip(f_x @ psi + f_theta, -LARGEST, LARGEST)
         return psi, psi
 
-    n, P = path.x.shape[1], ravel_pytree(theta)[0].size
-    return jax.lax.scan(forward, jnp.zeros_like(path.x, shape=(n, P)), (path.x[:-1], path.u))[1]
+    none = jnp.zeros_like(path.x, shape=(path.x.shape[1], flat.size))
+    return jax.lax.scan(forward, none, (path.x[:-1], path.u))[1]
 
 
 def products(step: ParametricStep, theta: Any, path: Path, kind: str, v: Any) -> Array:

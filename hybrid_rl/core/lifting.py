@@ -10,6 +10,18 @@ from hybrid_rl.protocols import Model
 from hybrid_rl.types import Batch, EnvState, Params, PyTree, Spec
 
 
+class Known:
+    """What models share of which nothing is learned."""
+
+    def init(self, key: Array, spec: Spec) -> tuple[()]:
+        """No parameters."""
+        return ()
+
+    def lift(self, params: Any, obs: Array) -> Array:
+        """The observation [o] itself."""
+        return obs
+
+
 def lift(model: Model | None, params: PyTree, obs: Array) -> Array:
     """The planning state x [n] of an observation [o]."""
     return obs if model is None else model.lift(params, obs)

@@ -12,12 +12,14 @@ the model, as in MAAC (Clavera et al. 2020); for H = 0 it is the policy's object
 with the target critic's Q, are model-based value expansion (Feinberg et al. 2018).
 """
 
+from abc import ABC, abstractmethod
+
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.protocols import Env
-from hybrid_rl.types import Imagined, Path, Reward
+from hybrid_rl.types import Imagined, Params, Path, Return, Reward, Spec
 
 FALLS = 3.0  # the survival bonus of a decision, where episodes end by a fall
 
@@ -39,6 +41,29 @@ def rewards(reward: Reward, path: Path) -> Array:
     return jax.vmap(reward)(path.x[:-1], path.u, path.x[1:])
 
 
+class Summed(ABC):
+    """What objectives share that are a sum of rewards over time, without a memory."""
+
+    @abstractmethod
+    def rewards(self, params: Params, path: Path) -> Array:
+        """r [T] along path, x [T+1, n] and u [T, m]."""
+
+    def init(self, spec: Spec) -> tuple[()]:
+        """No memory: what the data say is in the model's parameters."""
+        return ()
+
+    def prepare(
+        self, params: Params, memory: tuple[()], x: Array, u_before: Array, key: Array
+    ) -> tuple[Return, tuple[()]]:
+        """J of a path; the key is not used."""
+        return lambda path: self.rewards(params, path).sum(), memory
+
+    def reward_to_go(self, params: Params, path: Path) -> Array:
+        """S [T+1] along path, x [T+1, n] and u [T, m]; S[T] is 0."""
+        to_go = jnp.cumsum(self.rewards(params, path)[::-1])[::-1]
+        return jnp.append(to_go, 0.0)
+
+
 def soft(paths: Imagined, alpha: Array, discount: float, last: Array) -> tuple[Array, Array]:
     """V_0 [B] and y [H, B] along paths whose last decisions have action values `last` [B]."""
 
@@ -58,11 +83,9 @@ def reached(paths: Imagined) -> Array:
     return jnp.cumprod(before, 0)
 
 
-def bonus(world: Env, given: float | None) -> float:
-    """The survival bonus of a decision: `given`, or by whether episodes of `world` can end.
+def bonus(world: Env) -> float:
+    """The survival bonus of a decision, 0 where no episode of `world` can end.
 
     Without it falling pays: it ends an episode of negative rewards.
     """
-    if given is not None:
-        return given
     return 0.0 if getattr(world, "ended", None) is None else FALLS

@@ -53,10 +53,6 @@ class CategoricalQ:
         """`params`: the statistics are those of `in_batch`."""
         return params
 
-    def constrained(self, params: dict[str, Any]) -> dict[str, Any]:
-        """`params` with weights of unit norm."""
-        return {**params, "weights": normalised.constrained(params["weights"])}
-
     def all(self, params: dict[str, Any], x: Array, u: Array) -> Array:
         """Q of every member [members, ...] at x [..., n] and u [..., m]."""
         logits = jax.vmap(lambda p, xu: normalised.apply(self._net(), p, xu))(

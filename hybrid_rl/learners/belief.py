@@ -27,12 +27,6 @@ class BeliefLearner:
         if size != self.domain.size:
             raise ValueError(f"belief.size={size}: must be {self.domain.size}, as of the domain")
 
-    def check(self, decisions: int) -> None:
-        """Raise ValueError if the belief has no room for the measurements of an episode."""
-        check = getattr(self.belief, "check", None)
-        if check is not None:
-            check(decisions // self.every)
-
     def init(self, key: Array, spec: Spec) -> Any:
         """The belief before any measurement. The key is consumed."""
         return self.belief.init(key, spec)

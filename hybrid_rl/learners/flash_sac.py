@@ -24,6 +24,7 @@ from jax import Array
 
 from hybrid_rl.core.actor_critic import ActorCritic, ActorCriticState, adam_step
 from hybrid_rl.fields import Count, Positive, Share, has, part
+from hybrid_rl.networks.normalised import constrained
 from hybrid_rl.protocols import Critic, LearnedPolicy
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -91,7 +92,7 @@ class FlashSAC(ActorCritic):
             state.policy["weights"]
         )
         weights, optimiser = adam_step(rate, grads, state.policy_optimiser, state.policy["weights"])
-        policy = self._batched[0].constrained({"weights": weights, "statistics": statistics})
+        policy = {"weights": constrained(weights), "statistics": statistics}
         aim = batch.action.shape[-1] * math.log(self.target_sigma * math.sqrt(2 * math.pi * math.e))
         log_alpha, alpha_optimiser = adam_step(
             rate, alpha * (entropy - aim), state.alpha_optimiser, state.log_alpha
@@ -125,7 +126,7 @@ class FlashSAC(ActorCritic):
             state.critic["weights"]
         )
         weights, optimiser = adam_step(rate, grads, state.critic_optimiser, state.critic["weights"])
-        critic = self._batched[1].constrained({"weights": weights, "statistics": statistics})
+        critic = {"weights": constrained(weights), "statistics": statistics}
         target = optax.incremental_update(critic, state.target, self.tau)
         state = state.replace(critic=critic, critic_optimiser=optimiser, target=target)
         return state, {"sac/critic_loss": of_critic}

@@ -6,6 +6,7 @@ for each branch, drawn at each step. These are the branched rollouts of Janner e
 drawn for each update instead of stored.
 """
 
+from operator import attrgetter
 from typing import Any, ClassVar
 
 import jax
@@ -31,30 +32,12 @@ class MBPO:
 
     data: ClassVar[str] = "uniform"
 
-    @property
-    def owns(self) -> tuple[str, ...]:
-        """The fields of `Params` that `learner` learns."""
-        return self.learner.owns
-
-    @property
-    def batch_size(self) -> int:
-        """Transitions of a batch of `learner`."""
-        return self.learner.batch_size
-
-    @property
-    def batches(self) -> int:
-        """Batches of one update of `learner`."""
-        return self.learner.batches
-
-    @property
-    def during_random(self) -> bool:
-        """Whether `learner` also learns while decisions are random."""
-        return self.learner.during_random
-
-    @property
-    def updates(self) -> float:
-        """Updates of `learner` per decision."""
-        return self.learner.updates
+    # as `learner` has them
+    owns = property(attrgetter("learner.owns"))
+    batch_size = property(attrgetter("learner.batch_size"))
+    batches = property(attrgetter("learner.batches"))
+    during_random = property(attrgetter("learner.during_random"))
+    updates = property(attrgetter("learner.updates"))
 
     def init(self, key: Array, spec: Spec) -> Any:
         """The initial state of `learner`. The key is consumed."""

@@ -19,7 +19,7 @@ a running mean over the updates, is logged and ranks the members of an ensemble 
 decay of weights is AdamW's (Loshchilov and Hutter 2019).
 """
 
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, cast
 
 import jax
 import jax.numpy as jnp
@@ -109,11 +109,6 @@ class ModelLearner:
         """Members of an ensemble that draw states, if not all do."""
         return getattr(self.model, "elites", None)
 
-    @property
-    def _learned(self) -> Any:
-        """The reward, which has `observe`, `observe_targets` and `loss` as well."""
-        return self.reward
-
     def _optimiser(self, factor: Array | float = 1.0) -> optax.GradientTransformation:
         adam = adamw(factor * self.learning_rate, self.weight_decay)
         if self.max_grad_norm is None:
@@ -127,7 +122,7 @@ class ModelLearner:
         else:
             for_model, for_reward = jax.random.split(key)
             model = self.model.init(for_model, spec)
-            reward = self._learned.init(for_reward, lifted_spec(self.model, spec))
+            reward = cast(Any, self.reward).init(for_reward, lifted_spec(self.model, spec))
         optimiser = self._optimiser().init(_weights(model, reward))
         none = HeldOut(jnp.zeros(self.batches), jnp.zeros(())) if self.holdout else None
         return ModelState(model, reward, optimiser, none)
@@ -185,7 +180,7 @@ class ModelLearner:
 
     def _reward(self, reward: Any, model: Any, batch: Batch) -> tuple[Any, Any]:
         """The reward's parameters with updated statistics, and its loss as a function."""
-        part = self._learned
+        part = cast(Any, self.reward)
         if part is None:
             return None, None
         first: Any = jax.tree.map(lambda x: x[: self.batch_size], batch)

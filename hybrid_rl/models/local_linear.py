@@ -10,24 +10,16 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import riccati
+from hybrid_rl.core.lifting import Known
 from hybrid_rl.fields import part
 from hybrid_rl.protocols import Analytic
-from hybrid_rl.types import Spec
 
 
 @part
-class LocalLinear:
+class LocalLinear(Known):
     """The environment's dynamics to first order."""
 
     world: Analytic
-
-    def init(self, key: Array, spec: Spec) -> tuple[()]:
-        """No parameters."""
-        return ()
-
-    def lift(self, params: Any, obs: Array) -> Array:
-        """The observation [o] itself."""
-        return obs
 
     def step(self, params: Any, x: Array, u: Array) -> Array:
         """The next observation [o]."""

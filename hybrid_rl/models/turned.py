@@ -12,13 +12,13 @@ Source: frames that move with the state make any function equivariant (Puny et a
 Averaging, section 2, with one frame); as a model of dynamics our choice.
 """
 
-from typing import Annotated, Any
+from typing import Annotated, Any, cast
 
 import jax
 from jax import Array
 
 from hybrid_rl.fields import has, part
-from hybrid_rl.protocols import Env, Trainable
+from hybrid_rl.protocols import Trainable
 from hybrid_rl.types import Spec
 
 HEADLESS = "has no heading; choose task=sawyer_push, or model=ensemble"
@@ -26,20 +26,15 @@ HEADLESS = "has no heading; choose task=sawyer_push, or model=ensemble"
 
 @part
 class Turned:
-    """`model`, a single one or an ensemble, in the frames of `world`."""
+    """`model`, a single one or an ensemble, in the frames of `world`, whose R(a) turns a scene.
+
+    heading(obs [o])            direction [] of an object, to which R(a) adds a
+    turned(obs [o], a)          R(a) obs; what the dynamics depend on in the world may stay
+    turned_action(u [m], a)     R(a) u
+    """
 
     model: Trainable
-    world: Annotated[Env, has("heading", HEADLESS)]
-
-    @property
-    def _scene(self) -> Any:
-        """The world, whose R(a) turns a scene by the angle a [rad] about the vertical.
-
-        heading(obs [o])            direction [] of an object, to which R(a) adds a
-        turned(obs [o], a)          R(a) obs; what the dynamics depend on in the world may stay
-        turned_action(u [m], a)     R(a) u
-        """
-        return self.world
+    world: Annotated[Any, has("heading", HEADLESS)]
 
     @property
     def members(self) -> int:
@@ -63,40 +58,35 @@ class Turned:
         """Parameters with statistics, in the frame, of observations [B, o] and successors."""
 
         def one(obs: Array, after: Array) -> tuple[Array, Array]:
-            a = self._scene.heading(obs)
-            return self._scene.turned(obs, -a), self._scene.turned(after, -a)
+            a = self.world.heading(obs)
+            return self.world.turned(obs, -a), self.world.turned(after, -a)
 
         return self.model.observe(params, *jax.vmap(one)(obs, next_obs))
 
-    @property
-    def _ensemble(self) -> Any:
-        """The model, where it is an ensemble."""
-        return self.model
-
     def rank(self, params: Any, losses: Array) -> Any:
         """Parameters whose elites are the members with the least of `losses` [members]."""
-        return self._ensemble.rank(params, losses)
+        return cast(Any, self.model).rank(params, losses)
 
     def step(self, params: Any, x: Array, u: Array) -> Array:
         """Mean of the next planning state [n]."""
         a, y, v = self._into(x, u)
-        return self._scene.turned(self.model.step(params, y, v), a)
+        return self.world.turned(self.model.step(params, y, v), a)
 
     def draw(self, params: Any, x: Array, u: Array, noise: Array, key: Array) -> Array:
         """Next states [B, n] for noise [B, n] ~ N(0, I) in the frame. The key is consumed."""
         a, y, v = jax.vmap(self._into)(x, u)
-        return jax.vmap(self._scene.turned)(self.model.draw(params, y, v, noise, key), a)
+        return jax.vmap(self.world.turned)(self.model.draw(params, y, v, noise, key), a)
 
     def predictions(self, params: Any, x: Array, u: Array) -> tuple[Array, Array, Array]:
         """Mean of the next planning state [n], `disagreement` [n], every member's [members, n]."""
         a, *at = self._into(x, u)
-        mean, disagreement, each = self._ensemble.predictions(params, *at)
-        turned = self._scene.turned
+        mean, disagreement, each = cast(Any, self.model).predictions(params, *at)
+        turned = self.world.turned
         return turned(mean, a), disagreement, jax.vmap(turned, (0, None))(each, a)
 
     def disagreement(self, params: Any, x: Array, u: Array) -> Array:
         """Standard deviation [n] of the members in the frame, in running std of the change."""
-        return self._ensemble.disagreement(params, *self._into(x, u)[1:])
+        return cast(Any, self.model).disagreement(params, *self._into(x, u)[1:])
 
     def loss(self, params: Any, obs: Array, action: Array, next_obs: Array) -> Array:
         """Mean loss [] of transitions [members * B, ...]."""
@@ -108,14 +98,14 @@ class Turned:
 
     def _into(self, x: Array, u: Array) -> tuple[Array, Array, Array]:
         """The heading [] at x [n], and x and u [m] in its frame."""
-        a = jax.lax.stop_gradient(self._scene.heading(x))
-        return a, self._scene.turned(x, -a), self._scene.turned_action(u, -a)
+        a = jax.lax.stop_gradient(self.world.heading(x))
+        return a, self.world.turned(x, -a), self.world.turned_action(u, -a)
 
     def _batch(self, obs: Array, action: Array, next_obs: Array) -> tuple[Array, Array, Array]:
         """Transitions [B, ...] in the frames of their first observations."""
 
         def one(x: Array, u: Array, after: Array) -> tuple[Array, Array, Array]:
             a, y, v = self._into(x, u)
-            return y, v, self._scene.turned(after, -a)
+            return y, v, self.world.turned(after, -a)
 
         return jax.vmap(one)(obs, action, next_obs)

@@ -12,29 +12,21 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.core.lifting import Known
 from hybrid_rl.protocols import Env
-from hybrid_rl.types import EnvState, Params, Spec
+from hybrid_rl.types import EnvState, Params
 
 
 @dataclass(frozen=True)
-class World:
+class World(Known):
     """The task's physics, as `world` steps it, with any of its implementations."""
 
     world: Env
 
-    def init(self, key: Array, spec: Spec) -> tuple[()]:
-        """No parameters."""
-        return ()
-
     def start(self, params: Params) -> EnvState:
         """The state of the world."""
-        if params.world is None:
-            raise ValueError("model=world: plans from the world's state, not from observations")
+        assert params.world is not None  # `Trained.learner` refuses a loop with observations alone
         return params.world
-
-    def lift(self, params: Any, obs: Array) -> Array:
-        """The observation [o] itself, for policies and critics."""
-        return obs
 
     def step(self, params: Any, x: Any, u: Array) -> Any:
         """The EnvState after action u [m] at the EnvState x; x itself once the episode is over."""

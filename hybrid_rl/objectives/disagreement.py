@@ -11,27 +11,18 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.core.returns import Summed
 from hybrid_rl.fields import Positive, has, part
 from hybrid_rl.protocols import Model
-from hybrid_rl.types import Params, Path, Return, Spec
+from hybrid_rl.types import Params, Path
 
 
 @part
-class Disagreement:
+class Disagreement(Summed):
     """Expected information about an ensemble of models along a path."""
 
     model: Annotated[Model, has("disagreement", "needs an ensemble; choose model=ensemble")]
     noise: Positive = 0.1  # sigma, in running standard deviations of the change
-
-    def init(self, spec: Spec) -> tuple[()]:
-        """No memory: what the data say is in the model's parameters."""
-        return ()
-
-    def prepare(
-        self, params: Params, memory: tuple[()], x: Array, u_before: Array, key: Array
-    ) -> tuple[Return, tuple[()]]:
-        """J [nat] of a path; the key is not used."""
-        return lambda path: self.rewards(params, path).sum(), memory
 
     def rewards(self, params: Params, path: Path) -> Array:
         """Information [T] of each decision of path, x [T+1, n] and u [T, m]."""
@@ -39,8 +30,3 @@ class Disagreement:
             params.model, path.x[:-1], path.u
         )
         return 0.5 * jnp.sum(jnp.log1p((std / self.noise) ** 2), -1)
-
-    def reward_to_go(self, params: Params, path: Path) -> Array:
-        """S [T+1] along path, x [T+1, n] and u [T, m]; S[T] is 0."""
-        to_go = jnp.cumsum(self.rewards(params, path)[::-1])[::-1]
-        return jnp.append(to_go, 0.0)

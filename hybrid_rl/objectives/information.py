@@ -14,29 +14,20 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import least_squares
+from hybrid_rl.core.returns import Summed
 from hybrid_rl.fields import Positive, part
 from hybrid_rl.protocols import LinearModel
-from hybrid_rl.types import Params, Path, Return, Spec
+from hybrid_rl.types import Params, Path
 
 
 @part
-class Information:
+class Information(Summed):
     """Information along a path about the model in `Params`."""
 
     model: LinearModel
     criterion: Literal["gain", "norm"] = "gain"
     noise: Positive = 0.1  # sigma of gain, in units of the data's noise; 1: as accurate as they are
     floor: Positive = 1e-5  # eps of norm
-
-    def init(self, spec: Spec) -> tuple[()]:
-        """No memory: what the data say is in the model's parameters."""
-        return ()
-
-    def prepare(
-        self, params: Params, memory: tuple[()], x: Array, u_before: Array, key: Array
-    ) -> tuple[Return, tuple[()]]:
-        """J of a path; the key is not used."""
-        return lambda path: self.rewards(params, path).sum(), memory
 
     def rewards(self, params: Params, path: Path) -> Array:
         """r [T] along path, x [T+1, n] and u [T, m]."""
@@ -46,8 +37,3 @@ class Information:
             return -1 / (jnp.sum(s**2, -1) + self.floor)
         spread = jax.vmap(least_squares.leverage, (None, 0))(params.model["spread"], s)
         return jnp.log1p(spread / self.noise**2)
-
-    def reward_to_go(self, params: Params, path: Path) -> Array:
-        """S [T+1] along path, x [T+1, n] and u [T, m]; S[T] is 0."""
-        to_go = jnp.cumsum(self.rewards(params, path)[::-1])[::-1]
-        return jnp.append(to_go, 0.0)

@@ -41,10 +41,6 @@ class UnitGaussian(Squashed):
         """`params`: the statistics are those of `in_batch`."""
         return params
 
-    def constrained(self, params: dict[str, Any]) -> dict[str, Any]:
-        """`params` with weights of unit norm."""
-        return {**params, "weights": normalised.constrained(params["weights"])}
-
     def gaussian(self, params: dict[str, Any], x: Array) -> tuple[Array, Array]:
         """The mean mu and standard deviation sigma [..., m] before tanh, at x [..., n]."""
         return self._split(normalised.apply(self._net(normalised.outputs(params)), params, x))

@@ -133,9 +133,8 @@ class Target(Protocol):
     """p(s): the density in which a method explores the search space.
 
     One that depends on a teacher's labels so far has `evidence(params, x)`, whose sum over the
-    labelled states x [n] it gets as `params.labels.evidence`. One that has `outside(low, high)`,
-    whether all of it lies outside the box [low, high], [v], is refused for such a domain. One that
-    scores paths has `along(params, path)`, the value [] of measurements on a path [T, v].
+    labelled states x [n] it gets as `params.labels.evidence`. One that scores paths has
+    `along(params, path)`, the value [] of measurements on a path [T, v].
     """
 
     @gives("Params, s [v] -> log_density []")
@@ -144,7 +143,10 @@ class Target(Protocol):
 
 
 class Proposal(Protocol):
-    """The distribution from which a sampling planner draws its candidates."""
+    """The distribution from which a sampling planner draws its candidates.
+
+    A mixture has `split(quantiles [K])` alone: its proposals, each with those of its candidates.
+    """
 
     @gives("spec, quantile [] -> carry")
     def init(self, spec: Spec, quantile: Array) -> PyTree:

@@ -20,7 +20,6 @@ class Aim:
     quantity: str = "speed"
     target: tuple[float, ...] | float = 1.0  # q*, in the quantity's unit
     effort: NotNegative = 0.05  # c, of actions in [-1, 1]
-    alive: NotNegative | None = None  # b; None: 3 where a fall ends the episode, else 0
 
     def __post_init__(self) -> None:
         known = self.world.quantities(jnp.zeros(self.world.spec.obs))
@@ -32,4 +31,4 @@ class Aim:
         q = self.world.quantities(after)[self.quantity]
         error = q - jnp.asarray(self.target).reshape(q.shape)
         away = jnp.sqrt(jnp.sum(error**2) + 1e-12)  # whose gradient at 0 is finite
-        return bonus(self.world, self.alive) - away - self.effort * jnp.sum(u**2)
+        return bonus(self.world) - away - self.effort * jnp.sum(u**2)

@@ -1,13 +1,11 @@
-"""r = b - |q - q*| - w |e| - c |u|^2: push an object to another position than the task's target.
+"""r = -|q - q*| - w |e| - c |u|^2: push an object to another position than the task's target.
 
-q is the object's position seen from the task's target, e that seen from the hand [m]; b is that of
-core.returns.
+q is the object's position seen from the task's target, e that seen from the hand [m].
 """
 
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core.returns import bonus
 from hybrid_rl.fields import FieldError, NotNegative, part
 from hybrid_rl.protocols import Measured
 
@@ -22,7 +20,6 @@ class Push:
     target: tuple[float, ...] = (0.1, 0.0)  # q* [m]
     reach: NotNegative = 0.8  # w
     effort: NotNegative = 0.01  # c, of actions in [-1, 1]
-    alive: NotNegative | None = 0.0  # b
 
     def __post_init__(self) -> None:
         known = self.world.quantities(jnp.zeros(self.world.spec.obs))
@@ -37,4 +34,4 @@ class Push:
             weight * jnp.sqrt(jnp.sum(error**2) + 1e-12)  # whose gradient at 0 is finite
             for weight, error in ((1.0, away), (self.reach, q["reach"]))
         )
-        return bonus(self.world, self.alive) - cost - self.effort * jnp.sum(u**2)
+        return -cost - self.effort * jnp.sum(u**2)

@@ -26,7 +26,6 @@ class Run:
     effort: NotNegative = 0.1  # c, of actions in [-1, 1]
     level: Positive | None = None  # [rad] the largest pitch; None: any
     price: NotNegative = 10.0  # p, of a decision with a larger pitch
-    alive: NotNegative | None = None  # b; None: 3 where a fall ends the episode, else 0
 
     def __post_init__(self) -> None:
         known = self.world.quantities(jnp.zeros(self.world.spec.obs))
@@ -45,11 +44,7 @@ class Run:
     def _paid(self, u: Array, after: Array, indicator: Callable[[Array], Array]) -> Array:
         """The reward []; indicator: of the pitch [rad] beyond the level."""
         q = self.world.quantities(after)
-        reward = (
-            bonus(self.world, self.alive)
-            + self.direction * q["speed"]
-            - self.effort * jnp.sum(u**2)
-        )
+        reward = bonus(self.world) + self.direction * q["speed"] - self.effort * jnp.sum(u**2)
         if self.level is None:
             return reward
         return reward - self.price * indicator(jnp.abs(q["pitch"]) - self.level)

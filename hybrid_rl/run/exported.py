@@ -13,9 +13,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
-from jax.flatten_util import ravel_pytree
 
 from hybrid_rl.controllers.policy import PolicyController
+from hybrid_rl.core.batching import of_words, words
 from hybrid_rl.core.lifting import is_identity
 from hybrid_rl.errors import UsageError
 from hybrid_rl.files.atomic import replacing
@@ -50,16 +50,16 @@ def program(
 
         return _exported(act, platforms, obs)
     first = controller.init(spec)
-    words = _words((jnp.zeros((), jnp.uint32), first))
+    packed = words((jnp.zeros((), jnp.uint32), first))
 
     def decide(obs: Array, state: Array, key: Array) -> tuple[Array, Array]:
-        count, now = _tree(state, (jnp.zeros((), jnp.uint32), first))
+        count, now = of_words(state, (jnp.zeros((), jnp.uint32), first))
         now = jax.tree.map(lambda begin, later: jnp.where(count == 0, begin, later), first, now)
         u, now, _ = controller.act(params, now, obs, jax.random.wrap_key_data(key))
-        return scaled(u), _words((count + 1, now))
+        return scaled(u), words((count + 1, now))
 
     two = jax.ShapeDtypeStruct((2,), jnp.uint32)
-    state = jax.ShapeDtypeStruct(words.shape, jnp.uint32)
+    state = jax.ShapeDtypeStruct(packed.shape, jnp.uint32)
     return _exported(decide, platforms, obs, state, two)
 
 
@@ -67,29 +67,6 @@ def _exported(f: Callable[..., Any], platforms: Sequence[str], *given: Any) -> j
     """`f` of arrays of these shapes, in float32 whatever it was trained in."""
     with precision.using("float32"):
         return jax.export.export(jax.jit(f), platforms=platforms)(*given)
-
-
-def _bits(leaf: Any) -> Array:
-    """A number of 32 bits or bool as uint32."""
-    leaf = jnp.asarray(leaf)
-    leaf = leaf.astype(jnp.uint32) if leaf.dtype == bool else leaf
-    return jax.lax.bitcast_convert_type(leaf, jnp.uint32)
-
-
-def _words(tree: Any) -> Array:
-    """The leaves of 32 bits or bool, one after the other, as uint32 [w]."""
-    return ravel_pytree(jax.tree.map(_bits, tree))[0]
-
-
-def _tree(words: Array, like: Any) -> Any:
-    """The inverse of `_words`, for a tree like `like`."""
-
-    def one(bits: Array, leaf: Any) -> Array:
-        leaf = jnp.asarray(leaf)
-        same = leaf.dtype != bool
-        return jax.lax.bitcast_convert_type(bits, leaf.dtype) if same else bits != 0
-
-    return jax.tree.map(one, ravel_pytree(jax.tree.map(_bits, like))[1](words), like)
 
 
 def layers(spec: Spec, controller: Controller, params: Params) -> Perceptron:

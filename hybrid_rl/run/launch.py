@@ -11,6 +11,7 @@ from itertools import cycle
 from pathlib import Path
 from typing import Any
 
+import jax
 from omegaconf import DictConfig
 
 from hybrid_rl.errors import FAULTS, DivergenceError, UsageError, install
@@ -25,7 +26,7 @@ from hybrid_rl.run.logs.log import RunLog
 from hybrid_rl.run.logs.progress import Progress
 from hybrid_rl.run.logs.records import Row, changes, flatten_keys
 from hybrid_rl.run.machine import memory, provenance
-from hybrid_rl.run.machine.jax_settings import prepare, refuse_x64
+from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.run.members import Member, axis_of, joined, loop_of
 from hybrid_rl.run.schedule import Schedule
 from hybrid_rl.run.session import Session
@@ -239,8 +240,9 @@ def _resume(
 
 
 def fits(runs: Sequence[Run]) -> str:
-    """A line about the replay memory; raise UsageError if it does not fit."""
-    refuse_x64()
+    """A line about the replay memory; UsageError if it does not fit, or JAX computes in float64."""
+    if jax.config.read("jax_enable_x64"):
+        raise UsageError("JAX_ENABLE_X64: is on, and training computes in float32; turn it off")
     return memory.replay(runs[0], len(runs) * len(runs[0].seeds))
 
 
@@ -252,7 +254,9 @@ def _run(job: Job, handled: Handler, output: Output, first: Start | None = None)
         shelf = job.shelf(loop, output, stack)
         progress = stack.enter_context(_progress(run, output.progress))
         progress.note("\n".join(_notes(job)))
-        session = Session(loop, run.controllers, _schedule(config), shelf, progress)
+        values: dict[str, Any] = {name: config[name] for name in Schedule.__dataclass_fields__}
+        values["eval_modes"] = tuple(m for m in config.eval_modes if m in config.controllers)
+        session = Session(loop, run.controllers, Schedule(**values), shelf, progress)
         if config.resume is None:
             session.begin(first)
         else:
@@ -340,10 +344,3 @@ def _progress(run: Run, visible: bool) -> Progress:
     rounds = -(-config.total_steps // config.num_envs)
     label, steady = f"{config.task} {config.algo}", max(run.agent.changes())
     return Progress(rounds * config.num_envs, label, steady, visible)
-
-
-def _schedule(config: DictConfig) -> Schedule:
-    """When the run logs, evaluates and saves."""
-    values: dict[str, Any] = {name: config[name] for name in Schedule.__dataclass_fields__}
-    values["eval_modes"] = tuple(m for m in config.eval_modes if m in config.controllers)
-    return Schedule(**values)

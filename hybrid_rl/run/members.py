@@ -86,7 +86,7 @@ def axis_of(values: Sequence[Mapping[str, float]], runs: Sequence[Run]) -> Axis:
     try:
         axis = Axis.of(trees, tuple(map(folder.words, values)))
     except DifferError as error:
-        raise _refused(values, error.path) from error
+        raise _refused(values, str(error)) from error
     for key in values[0]:
         rest = values[0].items() - {(key, values[0][key])}
         same = [tree for tree, own in zip(trees, values, strict=True) if rest <= own.items()]

@@ -36,7 +36,7 @@ from hybrid_rl.run.checkpoints.store import Record, Shelf
 from hybrid_rl.run.launch import fits, refuse_edits, written
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.settings import build as configuration
-from hybrid_rl.settings.values import check
+from hybrid_rl.settings.values import check, one_of
 
 MODES = ("background", "between_episodes", "inline")
 HANDOVER_S = 0.1  # [s] between two sets of parameters that `act` gets from the thread
@@ -74,8 +74,7 @@ class OnlineLearner:
             seed: of all random numbers.
             config_dir: a folder with configuration groups of the user, as for `--config-dir`.
         """
-        if learn not in MODES:
-            raise UsageError(f"learn={learn}: choose one of {', '.join(MODES)}")
+        one_of("learn", learn, MODES)
         self.config = _config(method, {"obs": obs, "act": act, "dt": dt}, seed, config_dir)
         check(self.config)
         prepare(self.config)

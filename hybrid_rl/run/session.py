@@ -220,7 +220,7 @@ class Session:
         for s, end in new.items():
             self.record.final_eval[s] = None
             if self.left:  # else the error names it
-                self.progress.note(ended_note(end))
+                self.progress.note(f"{_words(end)}; it ends here, the others continue")
         return [
             {"step": end["step"], "learner": s, "diverged": end["quantity"]}
             for s, end in new.items()
@@ -296,11 +296,6 @@ def unsound(learners: Any, step: int) -> dict[int, tuple[int, str]]:
                 name = jax.tree_util.keystr(path, simple=True, separator=".")
                 failures.setdefault(int(s), (step, name))
     return failures
-
-
-def ended_note(end: End) -> str:
-    """A line for a learner that ended while others continue."""
-    return f"{_words(end)}; it ends here, the others continue"
 
 
 def failure_line(ends: Sequence[End], left: int, checkpoint: int | None) -> str:

@@ -184,7 +184,7 @@ def built(config: DictConfig) -> Run:
             -remembered * config.num_envs,
             tuple(config.get("freeze", ())),
         )
-        agent.check(rounds * config.num_envs, controllers.values())
+        agent.check(controllers.values())
     return Run(config, agent, {mode: c.greedy() for mode, c in controllers.items()})
 
 

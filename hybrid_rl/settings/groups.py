@@ -58,10 +58,7 @@ def groups(config_dir: str | Path | None = None) -> set[str]:
 
 def file(group: str, name: str) -> Path:
     """The YAML file of an option of the library or of the thesis."""
-    for conf in (CONF, THESIS):
-        if (path := conf / group / f"{name}.yaml").is_file():
-            return path
-    raise FileNotFoundError(f"{group}={name}")
+    return next(filter(Path.is_file, (conf / group / f"{name}.yaml" for conf in (CONF, THESIS))))
 
 
 @cache

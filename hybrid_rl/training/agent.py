@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import Any, NamedTuple, Self
 
 import jax
 import jax.numpy as jnp
@@ -19,10 +19,25 @@ from hybrid_rl.training import contract
 from hybrid_rl.training.contract import needs_world
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.history import acted, remembered
-from hybrid_rl.training.keys import Keys
 from hybrid_rl.training.metrics import masked_mean, outcome
 from hybrid_rl.training.rollout import act
 from hybrid_rl.types import Batch, EnvState, Params, Spec, Transition
+
+
+class Keys(NamedTuple):
+    """The random numbers of one decision."""
+
+    next: Array  # [] of the next decision
+    at_random: Array  # []
+    learning: Array  # []
+    deciding: Array  # [E]
+    resetting: Array  # [E]
+
+    @classmethod
+    def of(cls, key: Array, num_envs: int) -> Self:
+        """From the key [] of the state before the decision, which is consumed."""
+        keys = jax.random.split(key, 3 + 2 * num_envs)
+        return cls(*keys[:3], *jnp.split(keys[3:], 2))
 
 
 @struct.dataclass
@@ -85,16 +100,12 @@ class Agent:
         """The sizes for what learns and acts, which sees a history of observations."""
         return history.seen(self.spec, self.episode.history)
 
-    def check(self, decisions: int, controllers: Iterable[Controller] = ()) -> None:
-        """Raise ValueError if a part refuses a run of so many decisions; no device is used.
+    def check(self, controllers: Iterable[Controller] = ()) -> None:
+        """Raise ValueError if a part refuses a run; no device is used.
 
         controllers: others that act with what it learns.
         """
         contract.check(self, [self.controller, *controllers])
-        longest = min(decisions, self.episode.steps * self.num_envs)
-        for learner in self.learners.values():
-            if (check := getattr(learner, "check", None)) is not None:
-                check(longest)
         jax.eval_shape(lambda: self.controller.init(self.spec))
         if not self.learners and needs_world(self.controller):  # not every planner can
             jax.eval_shape(lambda: self.step(self.init(jax.random.key(0)), jnp.int32(0)))

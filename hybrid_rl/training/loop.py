@@ -46,11 +46,7 @@ REPLICATED = PartitionSpec()
 
 
 class DifferError(ValueError):
-    """Trees of parts differ in more than numbers; `path` is where."""
-
-    def __init__(self, path: str) -> None:
-        super().__init__(f"{path}: differs, and is no number")
-        self.path = path
+    """Trees of parts differ in more than numbers, at the path that it names."""
 
 
 @dataclass(frozen=True)

@@ -27,6 +27,7 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.envs.mujoco.scenery import pose_of
 from hybrid_rl.networks import Perceptron
 from hybrid_rl.run import saved as trained
 from hybrid_rl.run.exported import layers
@@ -140,7 +141,7 @@ def _pose(env: Any, like: EnvState) -> str:
     """Positions qpos of the scene at a state, as a function of JavaScript."""
 
     def pose(state: tuple[Any, Any]) -> Array:
-        return env.pose(like.replace(data=state[0], info=state[1]))
+        return pose_of(env)(like.replace(data=state[0], info=state[1]))
 
     program = Program()
     qpos = program.function(pose, ("s",), ((like.data, like.info),))

@@ -7,7 +7,6 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from hybrid_rl.beliefs.maps import learned
 from hybrid_rl.beliefs.maps.known import KnownMap
 from hybrid_rl.beliefs.maps.learned import LearnedMap
 from hybrid_rl.envs.analytic.contact_plane import ContactPlane
@@ -35,7 +34,8 @@ def test_the_known_map_steps_where_the_robot_touches() -> None:
 def file(tmp_path: Path) -> Path:
     """A map whose f is bilinear: 1 - 2 x + y - 3 x y on the box [0, 2] x [0, 1]."""
     x, y = np.meshgrid(np.linspace(0, 2, 9), np.linspace(0, 1, 6), indexing="ij")
-    learned.save(tmp_path / "map.npz", 1 - 2 * x + y - 3 * x * y, [0, 0], [2, 1], 2.0)
+    f = 1 - 2 * x + y - 3 * x * y
+    np.savez(tmp_path / "map.npz", f=np.float32(f), low=[0.0, 0.0], high=[2.0, 1.0], slope=2.0)
     return tmp_path / "map.npz"
 
 

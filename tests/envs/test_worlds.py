@@ -82,8 +82,8 @@ def test_lanes_are_equal_by_start_and_nan_stays_in_its_own(env):
 def test_it_is_equal_by_value_and_its_pose_is_one_of_its_scene(env):
     again = replace(env)
     assert (env, hash(env)) == (again, hash(again))
-    model = mjcf.load(scenery.scene_of(env))
-    pose = jax.eval_shape(lambda key: env.pose(env.reset(key)), jax.random.key(0))
+    model, pose_of = mjcf.load(scenery.scene_of(env)), scenery.pose_of(env)
+    pose = jax.eval_shape(lambda key: pose_of(env.reset(key)), jax.random.key(0))
     assert pose.shape == (model.nq,)
     assert model.camera("track").id >= 0
 

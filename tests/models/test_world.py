@@ -12,7 +12,7 @@ from jax import Array
 from toys import Grid
 
 from hybrid_rl.controllers.sampling import SamplingController
-from hybrid_rl.envs.cartpole import ASSET, Cartpole
+from hybrid_rl.envs.cartpole import Cartpole
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.errors import UsageError
 from hybrid_rl.models.world import World
@@ -27,7 +27,7 @@ T, K, LAMBDA, GAMMA = 4, 3, 0.5, 0.9
 
 def by_hand(state: EnvState, u: float) -> list[float]:
     """Rewards of T decisions of two steps each with constant u, from MuJoCo C."""
-    model = mjcf.load(ASSET)
+    model = mjcf.load("cartpole.xml")
     data = mujoco.MjData(model)
     data.qpos[:], data.qvel[:] = state.data.qpos, state.data.qvel
     rewards = []

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import make_interp_spline
 
+from hybrid_rl.core.sampling import Candidates
 from hybrid_rl.proposals.knots import KnotsProposal
 from hybrid_rl.proposals.mixture import MixtureProposal
 from hybrid_rl.proposals.noise import NoiseProposal
@@ -37,10 +38,9 @@ def test_one_knot_holds_and_many_are_white() -> None:
 def test_a_mixture_shapes_the_noise_of_each() -> None:
     """One half of the candidates is smooth, the other white."""
     knots, white = KnotsProposal(2, std=0.1), NoiseProposal(std=0.1)
-    both = MixtureProposal(knots, white)
-    shaped, spec = both.shaped(jnp.asarray(NOISE)), Spec(obs=1, act=M, dt=0.1)
-    for quantile, want in ((0.0, np.asarray(knots.shaped(jnp.asarray(NOISE)))), (0.9, NOISE)):
-        carry = both.init(spec, jnp.float32(quantile))
-        now = jax.tree.map(lambda leaf: leaf[3], shaped)
-        v, _, _ = both(Params(), carry, jnp.zeros(1), jnp.full(M, 0.2), now)
-        np.testing.assert_allclose(v, np.clip(0.2 + 0.1 * want[3], -1, 1), rtol=1e-5)
+    both, plan = Candidates(MixtureProposal(knots, white), 4), jnp.full(NOISE.shape, 0.2)
+    begun, key = both.begin(Spec(obs=1, act=M, dt=0.1)), jax.random.key(0)
+    u = both.imagine(Params(), lambda x, u: x, begun, jnp.zeros(1), plan, key).path.u
+    noise = jax.random.normal(key, u.shape)
+    want = np.stack([*map(knots.shaped, noise[:2]), *noise[2:]])
+    np.testing.assert_allclose(u, np.clip(0.2 + 0.1 * want, -1, 1), rtol=1e-5)

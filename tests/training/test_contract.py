@@ -118,7 +118,7 @@ class Actless:
 
 def check(planner: Any = Planner(), learner: Any = Fit()) -> None:
     agent = hr.Agent(hr.Episode(Pendulum(), 20), planner, {"model": learner}, Replay().within(9, 1))
-    agent.check(9)
+    agent.check()
 
 
 @dataclass(frozen=True)
@@ -203,7 +203,7 @@ def test_a_reward_without_a_learner_is_named_and_not_the_users_model():
 def test_a_model_without_a_learner_is_named_in_a_planner_of_the_users_too():
     agent = hr.Agent(hr.Episode(Pendulum(), 20), Planner(), {}, Replay().within(9, 1))
     with pytest.raises(ValueError, match=r"^model=Line: Planner acts by it, and no learner of"):
-        agent.check(9)
+        agent.check()
 
 
 def test_a_policy_of_another_form_than_its_learner_trains_is_named():
@@ -219,8 +219,8 @@ def test_a_policy_of_another_form_than_its_learner_trains_is_named():
         r"^policy=TanhGaussian: PolicyController acts by it, but \S+ is float32\[4\] in it and fl"
     )
     with pytest.raises(ValueError, match=words):
-        agent.check(9)
-    replace(agent, controller=PolicyController(learner.policy)).check(9)
+        agent.check()
+    replace(agent, controller=PolicyController(learner.policy)).check()
 
 
 def test_a_model_of_another_form_than_its_learner_trains_is_named_in_a_run():
@@ -238,7 +238,7 @@ def test_parts_of_the_library_keep_the_contract_too(algo, monkeypatch):
     run = config.build(config.load(["task=pendulum", f"algo={algo}"]))
     for name in ("of_user", "has_users"):
         monkeypatch.setattr(contract, name, lambda part: True)
-    run.agent.check(100, run.controllers.values())
+    run.agent.check(run.controllers.values())
 
 
 @dataclass(frozen=True)

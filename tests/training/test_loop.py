@@ -104,7 +104,7 @@ def test_a_part_with_a_traced_number_skips_the_check_of_its_field():
 def test_what_is_no_number_is_refused_by_its_path(change, path):
     with pytest.raises(DifferError) as caught:
         Axis.of([ONE, replace(ONE, **change)])
-    assert caught.value.path == path
+    assert str(caught.value) == path
 
 
 def test_a_whole_number_stands_for_a_number():

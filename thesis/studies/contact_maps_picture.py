@@ -7,8 +7,8 @@ import numpy as np
 
 from hybrid_rl.analysis.curves import plural
 from hybrid_rl.analysis.style import blank, legend_outside, line_styles, words
-from hybrid_rl.beliefs.maps import learned
 from hybrid_rl.errors import UsageError
+from hybrid_rl.files.atomic import replacing
 from hybrid_rl.thesis.studies import false_contacts
 from hybrid_rl.thesis.studies.belief_panel import HALF, Panel, View, level
 from hybrid_rl.thesis.studies.contacts import (
@@ -151,7 +151,11 @@ def _save(run: Trials, f: np.ndarray, trial: int, out: str) -> None:
     if Path(out).suffix != ".npz":
         raise UsageError(f"map_out={out}: must end in .npz")
     belief: Any = run.recorded.run.agent.learners["belief"]
-    learned.save(out, f[trial], run.world.low, run.world.high, belief.belief.slope)
+    columns = {"f": f[trial], "low": run.world.low, "high": run.world.high}
+    columns |= {"slope": belief.belief.slope}
+    arrays: dict[str, Any] = {k: np.asarray(v, np.float32) for k, v in columns.items()}
+    with replacing(Path(out)) as draft, draft.open("wb") as opened:
+        np.savez_compressed(opened, **arrays)
 
 
 def lines(numbers: dict[str, Any]) -> list[str]:

@@ -11,13 +11,11 @@ from scipy.special import digamma
 from hybrid_rl.analysis.curves import band, plural
 from hybrid_rl.analysis.style import (
     GREY,
-    ROW_HEIGHT,
     blank,
     legend_below,
     legend_outside,
     line_styles,
     plain_log,
-    row_points,
 )
 from hybrid_rl.core import poses as moves
 from hybrid_rl.thesis.studies.contact_maps_picture import marks_of
@@ -31,7 +29,7 @@ from hybrid_rl.thesis.studies.contacts import (
     stuck,
     trials,
 )
-from hybrid_rl.thesis.studies.dots import dots
+from hybrid_rl.thesis.studies.dots import ROW_HEIGHT, dots, row_points
 from hybrid_rl.thesis.studies.falls import wilson
 from hybrid_rl.thesis.studies.numbers import band_of
 

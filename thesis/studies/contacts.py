@@ -19,11 +19,11 @@ import numpy as np
 from contourpy import contour_generator  # a part of matplotlib
 from scipy import ndimage, stats
 
-from hybrid_rl.analysis.results import find, labels
+from hybrid_rl.analysis.results import find
 from hybrid_rl.core import poses
 from hybrid_rl.core.batching import repeat
 from hybrid_rl.errors import UsageError
-from hybrid_rl.thesis.studies.recorded import Recorded, one_episode, read
+from hybrid_rl.thesis.studies.recorded import Recorded, labels, one_episode, read
 
 TASKS = ("contact_plane", "sprk", "sawyer_probe")
 GRID = 128  # cells a side of a map

@@ -16,11 +16,11 @@ import jax
 import numpy as np
 from scipy.stats import norm
 
-from hybrid_rl.analysis.results import RunFolder, find, labels
+from hybrid_rl.analysis.results import RunFolder, find
 from hybrid_rl.envs.analytic.quadcopter_se3 import DT, THRUST
 from hybrid_rl.errors import UsageError
 from hybrid_rl.settings.build import build, load
-from hybrid_rl.thesis.studies.recorded import Recorded, one_episode, read
+from hybrid_rl.thesis.studies.recorded import Recorded, labels, one_episode, read
 
 TWIST = slice(12, 18)  # v and w in an observation
 STILL = 0.01  # error at rest

@@ -5,15 +5,14 @@ from typing import Any
 import numpy as np
 
 from hybrid_rl.analysis.style import (
-    ROW_HEIGHT,
     blank,
     legend_outside,
     line_styles,
     plain_log,
-    row_points,
     thousands,
     words,
 )
+from hybrid_rl.thesis.studies.dots import ROW_HEIGHT, row_points
 from hybrid_rl.thesis.studies.falls import STILL, falls, regressors, reported
 
 POINTS = 400  # of a line over time

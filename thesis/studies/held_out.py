@@ -17,11 +17,13 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.analysis.curves import band, iqm
-from hybrid_rl.analysis.results import find, labels
-from hybrid_rl.analysis.style import ROW_HEIGHT, blank, row_points, words
+from hybrid_rl.analysis.results import find
+from hybrid_rl.analysis.style import blank, words
 from hybrid_rl.cli.arguments import whole
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.saved import Trained, load
+from hybrid_rl.thesis.studies.dots import ROW_HEIGHT, row_points
+from hybrid_rl.thesis.studies.recorded import labels
 from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import Params, Spec
 

@@ -18,13 +18,14 @@ import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.analysis.curves import curves, improvement
-from hybrid_rl.analysis.results import RunFolder, find, labels
+from hybrid_rl.analysis.results import RunFolder, find
 from hybrid_rl.errors import UsageError
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run.folder import parse_config
 from hybrid_rl.run.saved import build_run, restore
 from hybrid_rl.settings.build import Run
 from hybrid_rl.thesis.studies.numbers import band_of, banded
+from hybrid_rl.thesis.studies.recorded import labels
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import evaluate_episodes, evaluation_keys
 from hybrid_rl.types import Params

@@ -1,4 +1,4 @@
-"""All decisions of a run, from the replay memory in its folder."""
+"""Runs by labels, and all decisions of one, from the replay memory in its folder."""
 
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import jax
 import numpy as np
 
-from hybrid_rl.analysis.results import RunFolder
+from hybrid_rl.analysis.results import RunFolder, differences, short
 from hybrid_rl.data.replay import unpack
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.folder import parse_config
@@ -52,3 +52,19 @@ def one_episode(recorded: Recorded) -> Any:
             "train with total_steps = episode.steps and, if the world has it, env.terminate=false"
         )
     return made
+
+
+def labels(folders: list[Path]) -> list[str]:
+    """The method of each run, with the settings in which its runs differ, or else its folder."""
+    runs = [RunFolder(folder) for folder in folders]
+    algos = [run.word("algo") for run in runs]
+    result = [""] * len(runs)
+    for algo in set(algos):
+        group = [i for i, other in enumerate(algos) if other == algo]
+        words = short(differences([runs[i] for i in group]))
+        for i, more in zip(group, words, strict=True):
+            result[i] = f"{algo} {more}".strip() if "=" in more or not more else folders[i].name
+    return [
+        label if result.count(label) == 1 else str(folder)
+        for label, folder in zip(result, folders, strict=True)
+    ]

@@ -20,20 +20,19 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.analysis.curves import plural
-from hybrid_rl.analysis.results import find, labels
+from hybrid_rl.analysis.results import find
 from hybrid_rl.analysis.style import (
-    ROW_HEIGHT,
     blank,
     legend_below,
     line_styles,
     plain_log,
-    row_points,
     words,
 )
 from hybrid_rl.envs.mujoco.kinematics import Chain
 from hybrid_rl.errors import UsageError
+from hybrid_rl.thesis.studies.dots import ROW_HEIGHT, row_points
 from hybrid_rl.thesis.studies.numbers import banded
-from hybrid_rl.thesis.studies.recorded import Recorded, one_episode, read
+from hybrid_rl.thesis.studies.recorded import Recorded, labels, one_episode, read
 
 LEFT_OUT = 1.0  # [s] of the path
 FURTHEST = 0.5  # [s] largest lag

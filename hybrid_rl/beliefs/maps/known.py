@@ -13,7 +13,6 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.fields import FieldError, Positive, has, part
-from hybrid_rl.protocols import Env
 
 OUTLINE, GRID = 256, 64  # points of the outline; starts a side of its search
 NEWTON, NEAR = 20, 1e-4  # iterations; |d - r| of a solution, in the box's shorter side
@@ -27,7 +26,7 @@ class KnownMap:
     the signed distance [] [m] to the nearest object, at rest where they are listed.
     """
 
-    world: Annotated[Env, has("distance", "needs contacts")]
+    world: Annotated[Any, has("distance", "needs contacts")]
     width: Positive = 0.008  # w [m]
     low: float = 0.01  # lo: at least twice the sensor's rate of false contacts
     high: float = 0.99  # hi
@@ -37,13 +36,9 @@ class KnownMap:
             raise FieldError(self, "low", f"must lie between 0 and high={self.high}")
 
     @property
-    def _plane(self) -> Any:
-        return self.world
-
-    @property
     def middle(self) -> tuple[float, float]:
         """c: the middle of the map's box [m]."""
-        (a, b), (c, d) = self._plane.low, self._plane.high
+        (a, b), (c, d) = self.world.low, self.world.high
         return (a + c) / 2, (b + d) / 2
 
     @property
@@ -53,7 +48,7 @@ class KnownMap:
 
     def chance(self, s: Array) -> Array:
         """p(y = 1) [] at s [2]."""
-        inside = (self._plane.radius + self.width - self._plane.distance(s)) / self.width
+        inside = (self.world.radius + self.width - self.world.distance(s)) / self.width
         return self.low + (self.high - self.low) * jax.nn.sigmoid(inside)
 
 

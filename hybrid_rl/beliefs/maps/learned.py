@@ -8,8 +8,6 @@ outside of the box: f changes more slowly than p, so that slopes stay smooth. Th
 """
 
 from functools import cache
-from pathlib import Path
-from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -18,19 +16,9 @@ from jax import Array
 
 from hybrid_rl.data import archive
 from hybrid_rl.fields import FieldError, part
-from hybrid_rl.files.atomic import replacing
 
 FIELDS = ("f", "low", "high", "slope")
 WRITE = "`python -m hybrid_rl.figures study=contact_maps view=map` writes one"
-
-
-def save(file: Path | str, f: Any, low: Any, high: Any, slope: float) -> None:
-    """Write a map: f [G, G] in the box from low [2] to high [2] [m]."""
-    Path(file).parent.mkdir(parents=True, exist_ok=True)
-    columns = {"f": f, "low": low, "high": high, "slope": slope}
-    with replacing(Path(file)) as draft, draft.open("wb") as out:
-        arrays: dict[str, Any] = {k: np.asarray(v, np.float32) for k, v in columns.items()}
-        np.savez_compressed(out, **arrays)
 
 
 @part

@@ -6,6 +6,7 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from datetime import timedelta
 from typing import Self
 
 from rich.console import Group
@@ -150,10 +151,10 @@ class Progress:
         if (speed := values.get("perf/env_steps_per_s")) is not None:
             known.append(f"{rate(speed)} decisions/s")
         if left := self._task.time_remaining:
-            known.append(f"{clock(left)} left")
+            known.append(f"{timedelta(seconds=round(left))} left")
         if self._task_now is not None:
             what, since = self._task_now
-            known.append(f"{what} for {clock(time.monotonic() - since)}")
+            known.append(f"{what} for {timedelta(seconds=round(time.monotonic() - since))}")
         return known
 
     def _picture(self) -> Group:
@@ -164,10 +165,3 @@ class Progress:
 def rate(value: float) -> str:
     """A speed: 52,000 or 3.7."""
     return f"{value:,.0f}" if value >= 9.95 else f"{value:.1f}"
-
-
-def clock(seconds: float) -> str:
-    """A duration as h:mm:ss."""
-    minutes, rest = divmod(round(seconds), 60)
-    hours, minutes = divmod(minutes, 60)
-    return f"{hours}:{minutes:02}:{rest:02}"

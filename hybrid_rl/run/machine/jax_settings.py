@@ -7,8 +7,6 @@ from tempfile import TemporaryFile
 
 from omegaconf import DictConfig
 
-from hybrid_rl.errors import UsageError
-
 CACHE = "JAX_COMPILATION_CACHE_DIR"  # JAX's own variable, which overrides compile_cache
 CACHE_BYTES = 4 * 2**30  # [bytes] at most
 OURS = "programs"  # folder in compile_cache, as JAX deletes from its folder what it likes
@@ -37,14 +35,6 @@ def prepare(config: DictConfig) -> None:
         jax.config.update("jax_compilation_cache_dir", str(cache))
         jax.config.update("jax_compilation_cache_max_size", CACHE_BYTES)
         jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.1)
-
-
-def refuse_x64() -> None:
-    """Raise UsageError where JAX computes in float64, which no program that trains does."""
-    import jax
-
-    if jax.config.read("jax_enable_x64"):
-        raise UsageError("JAX_ENABLE_X64: is on, and training computes in float32; turn it off")
 
 
 def cache_folder(compile_cache: str) -> Path | None:

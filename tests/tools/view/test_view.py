@@ -68,7 +68,7 @@ def test_a_number_of_the_goal_is_an_argument_of_the_program():
 
 def test_sliders_have_the_range_of_their_field():
     found = {one.key: one for one in sliders("reward", Aim(Pendulum(), "height", -3.0))}
-    assert set(found) == {"reward.target", "reward.effort"}  # alive is null
+    assert set(found) == {"reward.target", "reward.effort"}
     assert (found["reward.target"].least, found["reward.target"].most) == (-15, 15)
     assert found["reward.effort"].least == 0
     (mass,) = [one for one in sliders("env", HalfCheetah()) if one.key == "env.mass"]
