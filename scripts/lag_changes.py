@@ -1,39 +1,39 @@
-"""Half-cheetahs that learned without delay act late: a lag that changes, parts of a decision.
+"""The package's half-cheetah, which learned without delay, acts late: a lag that changes.
 
-    python -m hybrid_rl.train settings=light random_steps=1000 num_seeds=5 seed=100 run_dir=DIR
-    python -m scripts.lag_changes run=DIR out=lag_changes.json
+    python -m scripts.lag_changes out=lag_changes.json
 
 Gymnasium's half-cheetah, 20 decisions a second, physics at 100 Hz; an action that is sent acts from
-the first step of the physics after its lag on. Nothing is learned. FILE has rewards of each learner
-times 1000, means over episodes: per arm before the lag changes, in the 100 decisions after it, and
-later. Arms of `changes`: the first lag for ever, `followed` every 100 decisions, the true one, and
-a controller that predicts nothing. Of `parts`: a lag whose part of a decision is left as it is, or
-held back until it is whole.
+the first step of the physics after its lag on. Nothing is learned. FILE has of each episode the
+mean reward of a decision times 1000. Of `changes`: before the lag changes, in the 100 decisions
+after it, and later, where the lag is the first one for ever, `followed` every 100 decisions, the
+true one, or where nothing is predicted. Of `parts`, by lag [s]: what is beyond whole decisions is
+left as it is, or the action is held back.
 """
 
 import json
 import math
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import gymnasium
 import jax
 import numpy as np
+from hydra.utils import instantiate
 
-import hybrid_rl as hr
 from hybrid_rl.cli.arguments import Argument, output, read, whole
 from hybrid_rl.envs.adapters.robot import PENDING
 from hybrid_rl.outside.lag import FOLLOWED, followed
 from hybrid_rl.outside.row_log import row_type
+from hybrid_rl.run import saved
+from hybrid_rl.run.saved import Trained
 from hybrid_rl.training import wrappers
-from hybrid_rl.training.ahead import ahead
+from hybrid_rl.training.ahead import AheadController
 from hybrid_rl.training.history import informed
 
 ARGUMENTS = (
-    Argument("run", "", "of half-cheetahs", needed="run=DIR"),
-    Argument("episodes", 3, "of each arm", whole()),
+    Argument("policy", "halfcheetah", "with its model"),
+    Argument("episodes", 10, "of each arm", whole()),
     Argument("out", "", "JSON", needed="out=FILE.json"),
 )
 DT, STEP, SOONEST = 0.05, 0.01, 0.003  # [s] of a decision, of the physics, and of deciding
@@ -44,15 +44,15 @@ PARTS = (0.0, 0.01, 0.05, 0.06, 0.1, 0.11)  # [s]
 
 @dataclass
 class Late:
-    """A learner of a run, and the episodes in which its actions act late."""
+    """A policy whose actions act late."""
 
-    run: Any
-    seed: int
+    policy: Trained
 
     def __post_init__(self) -> None:
-        controller, self.params = self.run.learner(self.seed, "full")
-        self.spec, model = self.run.agent.spec, controller.model
-        self.controller = ahead(controller, 0.0, PENDING)
+        controller, self.params = self.policy.learner(None, "policy")
+        assert self.policy.config is not None
+        self.spec, model = self.policy.episode.spec, instantiate(self.policy.config.model)
+        self.controller = AheadController(controller, model, 0.0, PENDING)
         self.act, self.informed = jax.jit(self.controller.act), jax.jit(informed)
 
         def predict(obs: Any, u: Any) -> Any:
@@ -101,27 +101,21 @@ class Late:
 def main() -> None:
     """The command."""
     given: Any = read(__doc__, ARGUMENTS)[0]
-    out, run = output("out", given["out"], (".json",)), hr.load(given["run"])
-    found: dict[str, Any] = {"seeds": list(run.seeds), "changes": {}, "parts": {}}
-    for seed in run.seeds:
-        learner = Late(run, seed)
-
-        def mean(of: Any) -> np.ndarray:
-            return np.mean([of(key=key) for key in range(given["episodes"])], 0)
-
-        for arm in ("first", "followed", "known", "nothing"):
-            paid = mean(partial(learner.paid, arm, (BEFORE, AFTER), LENGTH))
-            spans = {"before": (100, CHANGE), "during": (CHANGE, LATER), "after": (LATER, LENGTH)}
-            for span, (first, last) in spans.items():
-                one = found["changes"].setdefault(arm, {}).setdefault(span, [])
-                one.append(round(float(paid[first:last].mean()), 1))
-        for lag in PARTS:
-            for arm in ("left", "held"):
-                paid = mean(partial(learner.paid, arm, (lag, lag), LATER))
-                one = found["parts"].setdefault(arm, {}).setdefault(f"{lag:g}", [])
-                one.append(round(float(paid[100:].mean()), 1))
-        print(seed, {a: [v[-1] for v in one.values()] for a, one in found["changes"].items()})
-        print(seed, {a: [v[-1] for v in one.values()] for a, one in found["parts"].items()})
+    out, late = output("out", given["out"], (".json",)), Late(saved.read(given["policy"]))
+    arms = [("changes", arm, BEFORE, AFTER) for arm in ("first", "followed", "known", "nothing")]
+    arms += [("parts", arm, lag, lag) for lag in PARTS for arm in ("left", "held")]
+    found: dict[str, Any] = {"policy": given["policy"], "changes": {}, "parts": {}}
+    for kind, arm, before, after in arms:
+        one = found[kind].setdefault(arm, {})
+        spans = {"before": (100, CHANGE), "during": (CHANGE, LATER), "after": (LATER, LENGTH)}
+        if kind == "parts":
+            spans = {f"{before:g}": (100, LATER)}
+        last = max(end for _, end in spans.values())
+        for key in range(given["episodes"]):
+            paid = late.paid(arm, (before, after), last, key)
+            for span, (first, end) in spans.items():
+                one.setdefault(span, []).append(round(float(paid[first:end].mean()), 1))
+        print(kind, arm, {span: np.mean(one[span]) for span in spans}, flush=True)
         Path(out).write_text(json.dumps(found))
 
 

@@ -29,14 +29,11 @@ VIOLATED = "violation"  # in `metrics`: 1 where the decision violates the constr
 
 
 SLIGHT = 0.1  # [decisions] later than a whole number of them that an action may act
-ON_TIME = 1 / 3  # likewise, of the first: learning one decision late costs more than that
 
 
 def whole(lag: Any) -> Any:
     """A lag [decisions], a number or traced, once it is held back until it is whole."""
-    if isinstance(lag, float):
-        return float(math.ceil(lag - (ON_TIME if lag < 1 else SLIGHT)))
-    return jnp.ceil(lag - jnp.where(lag < 1, ON_TIME, SLIGHT))
+    return float(math.ceil(lag - SLIGHT)) if isinstance(lag, float) else jnp.ceil(lag - SLIGHT)
 
 
 @dataclass(frozen=True)
