@@ -6,9 +6,11 @@
 u_0 is the action of the decision, u_1 the one before; t_i is when it was sent and T when the next
 observation was taken, both from this one on [s]. Y is the change of the observation in units of its
 standard deviation, P projects on what is linear in the observation, B is a ridge regression. Where
-no lag explains more than any would by chance, it is 0.
+no lag explains more than any would by chance, it is 0. Once there is a model f of x and u, the lag
+is followed by min_d |x_{t+dt} - f(x_t, U_acted(d))|, which needs no random actions.
 """
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +22,8 @@ ENOUGH = 200  # random decisions that an estimate needs
 SHORTEST = 1e-6  # [s] of an interval, where an observation is that of before
 RIDGE = 1e-4  # of actions, per decision
 STEPS = 50  # lags in a decision that are tried
+FOLLOWED, COARSE = 100, 10  # decisions by which a lag is followed, and lags in one
+SURE = 3.0  # standard errors by which another lag must be better
 
 
 def shares(times: np.ndarray, interval: np.ndarray, lag: float) -> np.ndarray:
@@ -66,6 +70,29 @@ def estimated(
     return float(tried[errors.argmin()]) if errors.min() < chance * errors[0] else 0.0
 
 
+def followed(
+    model: Callable[[np.ndarray, np.ndarray], np.ndarray], rows: np.ndarray, lag: float
+) -> float:
+    """The lag [s] of rows [N], by which `model` of (obs [N, o], u [N, m]) predicts best.
+
+    It is the `lag` of before unless another one is better by SURE standard errors.
+    """
+    obs, after = rows["obs"], rows["next_obs"]
+    period, scale = float(np.median(rows["interval"])), (after - obs).std(0) + 1e-9
+
+    def errors(lag: float) -> np.ndarray:
+        u = acted(rows["sent"], rows["times"], rows["interval"], lag)
+        left = (after - model(obs, u.astype(np.float32))) / scale
+        return np.log1p((left**2).sum(-1))  # of each row, an impact weighs little
+
+    tried = np.arange((rows["sent"].shape[1] - 2) * COARSE + 1) / COARSE * period
+    each = np.array([errors(other) for other in tried])
+    best = each.mean(-1).argmin()
+    gain = errors(lag) - each[best]
+    sure = gain.mean() > SURE * gain.std() / np.sqrt(len(gain))
+    return float(tried[best]) if sure else lag
+
+
 def known_lag(env: Robot, folder: Path) -> float | None:
     """The lag [s] of actions after they were sent: given, or `published_lag`; None: neither."""
     found = handover.latest(folder / "lag", np.float64(0))
@@ -77,5 +104,10 @@ def published_lag(folder: Path, rows: np.ndarray) -> float:
     names, lag = ("obs", "next_obs", "sent", "times", "interval"), 0.0
     if len(rows):
         lag = estimated(*(rows[name] for name in names))
-    handover.publish(folder / "lag", np.float64(lag), len(rows))
+    publish(folder, lag)
     return lag
+
+
+def publish(folder: Path, lag: float) -> None:
+    """Let `known_lag` give this lag [s] from now on."""
+    handover.publish(folder / "lag", np.float64(lag), 0)

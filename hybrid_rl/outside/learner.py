@@ -142,11 +142,14 @@ class RowLearner:
         self.read += 1
         return True
 
-    def relabel(self, lag: float) -> None:
-        """Learn from what acted by a lag [s] from now on, also in the decisions in the memory."""
+    def relabel(self, lag: float, newest: int | None = None) -> None:
+        """Learn from what acted by a lag [s] from now on, also in the memory.
+
+        newest: how many decisions of the memory; None: all.
+        """
         self.lag, memory, o = lag, self.state.memory, self.loop.agent.spec.obs
         rows, size = np.array(memory.rows), memory.rows.shape[1]
-        for number in range(max(self.read - size, 0), self.read):
+        for number in range(max(self.read - min(newest or size, size), 0), self.read):
             u = transition(self.row_at(number), lag).action[0, 0]
             slot = (int(memory.count[0]) - self.read + number) % size
             rows[0, slot, 0, o : o + len(u)] = u

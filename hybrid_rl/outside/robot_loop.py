@@ -11,6 +11,7 @@ resumed learner makes the updates that it owes, and loses no row that came in th
 import sys
 import time
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -22,11 +23,12 @@ from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import WorldError
 from hybrid_rl.files.atomic import own_folder
 from hybrid_rl.outside import handover
-from hybrid_rl.outside.lag import known_lag, published_lag
+from hybrid_rl.outside.lag import FOLLOWED, followed, known_lag, publish, published_lag
 from hybrid_rl.outside.learner import RowLearner, RowLoop
 from hybrid_rl.outside.robot_process import RobotProcess
 from hybrid_rl.outside.row_log import RowLog
 from hybrid_rl.training.agent import AgentState, update_schedule
+from hybrid_rl.training.ahead import AheadController
 
 RESUMED = "the robot went on, or begins a new episode: its rows so far are read first, and the "
 RESUMED += "decisions after them differ from those of a run without the interruption"
@@ -70,7 +72,10 @@ class RobotProgram:
         self.learner = RowLearner(loop, state, self.log.read)
         self.memory_analysis = self.learner.programs[1].memory_analysis
         self.process = RobotProcess(env, loop.folder)
-        self.published, self.reported = 0.0, LATE_S / 2
+        self.published, self.reported, self.asked = 0.0, LATE_S / 2, 0
+        control: Any = loop.agent.controller
+        self.model = control.model if isinstance(control, AheadController) else None
+        self.predict = jax.jit(jax.vmap(self._predicted, (None, 0, 0)))
         self.room: int | None = None  # rows that fit into the memory; None before the first call
 
     def __call__(self, state: AgentState, start: Array, rounds: Array) -> tuple[AgentState, Any]:
@@ -116,15 +121,35 @@ class RobotProgram:
         return self.learner.read + memory.rows.shape[1] - held
 
     def _take_lag(self) -> None:
-        """Learn from what acted, once it is known how late: given, or by all random decisions."""
+        """Learn from what acted, once it is known how late: given, or by all random decisions.
+
+        Then follow it by the newest decisions, where it was not given and there is a model.
+        """
         learner, folder, count = self.learner, self.loop.folder, self.loop.agent.random_steps
-        if learner.lag is not None or learner.read < count:
-            return
-        if (lag := known_lag(self.env, folder)) is None:
-            lag = published_lag(folder, np.array([*map(self.log.read, range(count))]))
-        learner.relabel(lag)
+        if learner.lag is None and learner.read >= count:
+            if (lag := known_lag(self.env, folder)) is None:
+                lag = published_lag(folder, np.array([*map(self.log.read, range(count))]))
+            self._learn_by(lag)
+        elif learner.lag is not None and self.env.lag is None and self.model is not None:
+            if learner.read < max(self.asked, count) + FOLLOWED:
+                return
+            self.asked = learner.read
+            rows = np.array([*map(self.log.read, range(self.asked - FOLLOWED, self.asked))])
+            model = partial(self.predict, learner.params().model)
+            if (lag := followed(model, rows, learner.lag)) != learner.lag:
+                publish(folder, lag)
+                self._learn_by(lag, FOLLOWED)
+
+    def _learn_by(self, lag: float, newest: int | None = None) -> None:
+        """Learn by a lag [s] from now on, and from the newest decisions, and say so."""
+        self.learner.relabel(lag, newest)
         line = f"an action acts {1e3 * lag:.0f} ms after it is sent"
         print(f"hybrid_rl: {self.env.name}: {line}", file=sys.stderr, flush=True)
+
+    def _predicted(self, params: Any, obs: Array, u: Array) -> Array:
+        """The observation [o] after u [m] acted at obs [o], by the model."""
+        assert self.model is not None
+        return self.model.step(params, self.model.lift(params, obs), u)[: obs.size]
 
     def _due(self, step: int) -> int:
         """Gradient steps of all learners after decision `step`."""

@@ -28,7 +28,7 @@ from hybrid_rl.types import Clock, EnvState, PyTree, Sent, Spec
 VIOLATED = "violation"  # in `metrics`: 1 where the decision violates the constraint, else 0
 
 
-SLIGHT = 1 / 3  # [decisions] later than a whole number of them that an action may act
+SLIGHT = 0.1  # [decisions] later than a whole number of them that an action may act
 
 
 def whole(lag: Any) -> Any:

@@ -45,3 +45,18 @@ def moved(late: float, jitter: float, decisions: int = 1000) -> tuple:
 def test_the_lag_is_found_within_a_tenth(late, jitter):
     found = lags.estimated(*moved(late, jitter)) / DT
     assert found == pytest.approx(late, rel=0.1, abs=0.05)
+
+
+@pytest.mark.parametrize("late", [0.0, 0.3, 1.45, 2.3])
+@pytest.mark.parametrize("before", [0.0, 0.05])
+def test_a_lag_that_changes_is_followed_by_a_model(late, before):
+    """The model is linear, of decisions that were not late; a useless one changes nothing."""
+    obs, after, sent, times, interval = moved(0.0, 0.0)
+    inputs = np.column_stack([obs, lags.acted(sent, times, interval, 0.0)])
+    solved = np.linalg.lstsq(inputs, after, rcond=None)[0]
+    names = ("obs", "next_obs", "sent", "times", "interval")
+    newest = (each[-lags.FOLLOWED :] for each in moved(late, 0.0))
+    rows = dict(zip(names, newest, strict=True))
+    found = lags.followed(lambda x, u: np.column_stack([x, u]) @ solved, rows, before)
+    assert found / DT == pytest.approx(late, rel=0.1, abs=0.06)
+    assert lags.followed(lambda x, u: x, rows, before) == before

@@ -4,6 +4,7 @@ import threading
 import time
 from dataclasses import replace
 from itertools import pairwise
+from types import SimpleNamespace
 
 import jax.numpy as jnp
 import numpy as np
@@ -13,6 +14,7 @@ from counting import LINE, Counting, broken, lost, moved, of
 from hybrid_rl.errors import UsageError
 from hybrid_rl.files.atomic import own_folder
 from hybrid_rl.outside import lag as lags
+from hybrid_rl.outside import robot_loop
 from hybrid_rl.outside.lag import acted, known_lag
 from hybrid_rl.outside.learner import transition
 from hybrid_rl.outside.robot_loop import RobotProgram
@@ -112,5 +114,15 @@ def test_the_lag_is_estimated_from_the_random_decisions(agent, tmp_path, monkeyp
     assert lags.known_lag(loop.agent.episode.env, loop.folder) == 0.005
     robot_lag = metrics["robot/lag"][-1, 0]
     assert robot_lag == pytest.approx((0.005 + rows[19]["age"]) / Counting.dt, rel=1e-4)
-    again, _ = loop.compile(state)(state, jnp.int32(20), jnp.int32(5))  # a resumed learner
+    monkeypatch.setattr(robot_loop, "FOLLOWED", 4)
+    monkeypatch.setattr(robot_loop, "followed", lambda *given: 0.009)
+    program.model = SimpleNamespace(lift=lambda params, obs: obs, step=lambda params, x, u: x)
+    state, _ = program(state, jnp.int32(20), jnp.int32(5))
+    assert lags.known_lag(loop.agent.episode.env, loop.folder) == 0.009
+    read = int(state.memory.count[0])
+    kept = np.asarray(state.memory.rows)[0, :read, 0, 4:5]
+    each = [transition(row, 0.009).action[0, 0] for row in rows[:read]]
+    np.testing.assert_allclose(kept[-4:], each[-4:], atol=1e-6)
+    assert not np.allclose(kept[:15], each[:15])
+    again, _ = loop.compile(state)(state, jnp.int32(25), jnp.int32(5))  # a resumed learner
     assert again.memory.rows.shape == state.memory.rows.shape
