@@ -75,7 +75,8 @@ class Legs(Body):
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state after one decision. action: [m] in [-1, 1]."""
         action = jnp.clip(action, -1.0, 1.0)
-        data = self._body.step(state.data, servos(self._asset).home + OFFSET * action, STEPS)
+        aim = jnp.asarray(servos(self._asset).home) + OFFSET * action
+        data = self._body.step(state.data, aim, STEPS)
         count = (state.info["count"] + 1) % (HOLD * COMMANDS)
         info = state.info | {"count": count, "action": action}
         after = self._state(data, info)

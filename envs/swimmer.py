@@ -21,7 +21,10 @@ class Swimmer(Runner):
     """Swimmer; `physics` is native, mjx, warp or auto."""
 
     steps, dt, hidden = 4, 0.04, 2
-    _asset = "swimmer.xml"
+
+    @property
+    def _asset(self) -> str:
+        return "swimmer.xml"
 
     def _paid(self, data: PhysicsState, control: Array, speed: Array) -> tuple[Array, Array]:
         return speed - 1e-4 * (control**2).sum(), jnp.zeros((), bool)

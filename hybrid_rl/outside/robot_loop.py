@@ -73,7 +73,7 @@ class RobotProgram:
         self.memory_analysis = self.learner.programs[1].memory_analysis
         self.process = RobotProcess(env, loop.folder)
         self.published, self.reported, self.asked = 0.0, LATE_S / 2, 0
-        control: Any = loop.agent.controller
+        control = loop.agent.controller
         self.model = control.model if isinstance(control, AheadController) else None
         self.predict = jax.jit(jax.vmap(self._predicted, (None, 0, 0)))
         self.room: int | None = None  # rows that fit into the memory; None before the first call

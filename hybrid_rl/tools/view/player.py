@@ -100,7 +100,7 @@ class Player:
         self._key, now = jax.random.split(self._key)
         if self.command and world.commanded:
             command = [self.command.get(one.key, one.value) for one in subject.commands]
-            self.state = world.commanded(self.state, np.array(command, np.float32))
+            self.state = world.commanded(self.state, jnp.array(command, jnp.float32))
         self.decided = actor.decide(self.params, numbers, self.state, self._control, now)
         self._control = self.decided.control
         self.state = world.step(numbers, self.state, self.decided.u)
