@@ -12,10 +12,12 @@ same one; other values are part of its name (`mjcf`), so they hold in MuJoCo C, 
 from abc import ABC, abstractmethod
 from dataclasses import KW_ONLY
 
+from jax import Array
+
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.physics import Physics, Simulator
 from hybrid_rl.fields import FieldError, NotNegative, Positive, part
-from hybrid_rl.types import Spec
+from hybrid_rl.types import EnvState, Spec
 
 
 @part
@@ -39,10 +41,14 @@ class Body(ABC):
     def spec(self) -> Spec:
         """Observation size, action size and decision interval."""
 
+    def pose(self, state: EnvState) -> Array:
+        """Joint positions qpos [nq] for rendering."""
+        return state.data.qpos
+
     @property
-    @abstractmethod
     def _asset(self) -> str:
-        """The model, whose first m actuators are the motors."""
+        """The model, whose first m actuators are the motors; the library's robots have one."""
+        raise NotImplementedError
 
     @property
     def _body(self) -> Physics:
