@@ -29,6 +29,7 @@ ARGUMENTS = (
 
 def compared(trained: Trained, params: Params, key: Array) -> dict[str, Any]:
     """The numbers of one learner. The key is consumed."""
+    assert trained.agent is not None
     learner, step = trained.agent.learners["policy"], trained.episode.step
     policy, model, reward = learner.policy, learner.model, learner.reward
 

@@ -74,7 +74,9 @@ def members(folder: Path) -> list[Learner]:
     if not (alone and shared):
         return [timed for run in runs for timed, _ in run]
     time = clock(alone)
-    return [replace(each, x=time(each.x), ended=float(time(each.ended))) for each in shared]
+    return [
+        replace(each, x=time(each.x), ended=float(time(np.array(each.ended)))) for each in shared
+    ]
 
 
 def after(learner: Learner, minutes: float) -> float:

@@ -11,7 +11,7 @@ what the command needs before the first.
 
 import json
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 from time import monotonic
@@ -88,7 +88,7 @@ def learn(
     """Train one seed; on_row gets each evaluation. before: [s] of the command before any seed."""
     episode, began = run.agent.episode, monotonic() - before
 
-    def progress(step: int, metrics: dict[str, Any]) -> None:
+    def progress(step: int, metrics: Mapping[str, Any]) -> None:
         value = round(float(metrics["eval/episode_reward"]), 1)
         made = int(step) // episode.action_repeat
         on_row({"step": made, "return": value, "s": round(monotonic() - began, 1)})

@@ -52,7 +52,7 @@ class World:
         now = np.zeros(mujoco.mj_stateSize(self.model, FULL))
         mujoco.mj_getState(self.model, self.data, now, FULL)
         start, control = np.tile(now, (len(u), 1)), np.repeat(np.clip(u, -1, 1), STEPS, 1)
-        states, _ = self.pool.rollout(self.model, [self.data], start, control)
+        states: Any = self.pool.rollout(self.model, [self.data], start, control)[0]
         return states[:, STEPS - 1 :: STEPS, 1 : 1 + self.model.nq]
 
 
