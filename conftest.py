@@ -44,7 +44,7 @@ for name, value in SETTINGS.items():
 
 gc.set_threshold(50_000, 50, 50)  # tracing makes many objects that stay
 
-PARTS = 4  # commits that share the tests of a folder of tests/, each of which has its part
+PARTS = 6  # commits that share the tests of a folder of tests/, each of which has its part
 SLOW = [  # MJX compiles these for up to 40 s each
     f"{task}-mjx"
     for task in (
