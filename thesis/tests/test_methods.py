@@ -1,7 +1,7 @@
 """Methods by the thesis' names and experiments: each builds, and learns."""
 
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any, get_args, get_type_hints
 
 import pytest
 import small
@@ -64,7 +64,7 @@ def needs(composed: DictConfig) -> str:
         if "goal" in node and node.goal is None:  # of a known reward
             kinds.add("reward_of")
         if node.get("world") == composed.env:
-            kind = get_class(node._target_).__annotations__["world"]
+            kind = get_type_hints(get_class(node._target_), include_extras=True)["world"]
             kinds.update(each.has for each in get_args(kind)[1:] if isinstance(each, Must))
         for value in node.values():
             if isinstance(value, DictConfig):
