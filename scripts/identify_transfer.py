@@ -34,6 +34,7 @@ from hybrid_rl.critics.ensemble_q import EnsembleQ
 from hybrid_rl.data.replay import Replay
 from hybrid_rl.learners.sac import SAC
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
+from hybrid_rl.training.history import HistoryController
 from scripts.identify_trials import NOISE, played
 
 ARGUMENTS = (
@@ -41,6 +42,7 @@ ARGUMENTS = (
     arguments.Argument("first", 0, "number of the first one", arguments.whole(least=0)),
     arguments.Argument("seeds", 3, "policies of each kind", arguments.whole()),
     arguments.Argument("steps", 5000, "decisions of each", arguments.whole()),
+    arguments.Argument("history", 1, "observations that a policy sees", arguments.whole()),
     arguments.Argument("hidden", False, "true: also policies of the fourth kind", arguments.flag),
     arguments.Argument("out", "identify_transfer.json", "written after every policy"),
 )
@@ -96,12 +98,16 @@ class Reach:
         return hr.EnvState(data, obs, reward, info={"target": target})
 
 
-def trained(env: Reach, seeds: int, steps: int, folder: Path, **disturbed: Any) -> Any:
-    """Policies of so many seeds, trained in an environment."""
-    episode = hr.Episode(env, steps=STEPS, **disturbed)
+def trained(
+    file: Path, folder: Path, seeds: int, steps: int, history: int, **disturbed: Any
+) -> Any:
+    """Policies of so many seeds, trained on the model in `file`."""
+    episode = hr.Episode(Reach(str(file)), steps=STEPS, history=history, **disturbed)
     policy, critic = TanhGaussian(hidden=(64, 64)), EnsembleQ(hidden=(64, 64))
     learners = {"policy": SAC(policy, critic, batch_size=128)}
-    agent = hr.Agent(episode, PolicyController(policy), learners, Replay())
+    acting: Any = PolicyController(policy)
+    acting = acting if history == 1 else HistoryController(acting, history)
+    agent = hr.Agent(episode, acting, learners, Replay())
     result = hr.train(
         agent, total_steps=steps, num_seeds=seeds, run_dir=str(folder), progress=False
     )
@@ -141,7 +147,7 @@ def parameters(file: Path) -> identify.System:
 def main() -> None:
     """The command."""
     given: Any = arguments.read(__doc__, ARGUMENTS)[0]
-    seeds, steps = given["seeds"], given["steps"]
+    size = {name: given[name] for name in ("seeds", "steps", "history")}
     folder = Path(tempfile.mkdtemp())
     file = folder / "arm.xml"
     file.write_text(ARM)
@@ -151,10 +157,10 @@ def main() -> None:
     elements |= RANGES
     began = time.monotonic()
     shared = {
-        "nominal": trained(Reach(str(file)), seeds, steps, folder / "nominal"),
+        "nominal": trained(file, folder / "nominal", **size),
         "wide": trained(
-            *(Reach(str(file)), seeds, steps, folder / "wide"),
-            **{"randomise": {"elements": elements}, "delay": DELAY[0], "jitter": DELAY[1]},
+            *(file, folder / "wide"),
+            **{"randomise": {"elements": elements}, "delay": DELAY[0], "jitter": DELAY[1], **size},
         ),
     }
     rows = []
@@ -173,19 +179,19 @@ def main() -> None:
         loaded = {
             **shared,
             "identified": trained(
-                *(Reach(str(folder / f"found_{k}/arm.xml")), seeds, steps, folder / f"own_{k}"),
+                *(folder / f"found_{k}/arm.xml", folder / f"own_{k}"),
                 **{"randomise": {"elements": str(folder / f"found_{k}/ranges.yaml")}},
-                **{"delay": low, "jitter": high - low},
+                **{"delay": low, "jitter": high - low, **size},
             ),
         }
         if given["hidden"]:
-            own = Reach(str(hidden)), seeds, steps, folder / f"best_{k}"
-            loaded["hidden"] = trained(*own, delay=arm.delay(theta))
-        row = {name: returns(each, seeds, plant) for name, each in loaded.items()}
+            best = folder / f"best_{k}"
+            loaded["hidden"] = trained(hidden, best, delay=arm.delay(theta), **size)
+        row = {name: returns(each, given["seeds"], plant) for name, each in loaded.items()}
         error = (found.theta / np.maximum(theta, 1e-3) - 1).tolist()
         described = {"plant": k, "theta": theta.tolist(), "relative": error}
         rows.append({**described, "held": vars(found.held), "returns": row})
-        report = {"names": arm.names, "steps": steps, "seeds": seeds, "plants": rows}
+        report = {"names": arm.names, **size, "plants": rows}
         Path(given["out"]).write_text(json.dumps(report))
         means = {name: round(float(np.mean(each)), 2) for name, each in row.items()}
         print(k, means, f"{time.monotonic() - began:.0f} s", flush=True)

@@ -5,9 +5,9 @@
 Gymnasium's half-cheetah, 20 decisions a second, physics at 100 Hz; an action that is sent acts from
 the first step of the physics after its lag on. Nothing is learned. FILE has of each episode the
 mean reward of a decision times 1000. Of `changes`: before the lag changes, in the 100 decisions
-after it, and later, where the lag is the first one for ever, `followed` every 100 decisions, the
-true one, or where nothing is predicted. Of `parts`, by lag [s]: what is beyond whole decisions is
-left as it is, or the action is held back.
+after that, and later. The controller keeps the `first` lag, estimates it every 100 decisions
+(`followed`), knows the true one, or predicts `nothing`. Of `parts`, by lag [s]: what is beyond
+whole decisions is left as it is, or the action is held back.
 """
 
 import json

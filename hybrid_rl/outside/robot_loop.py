@@ -123,7 +123,7 @@ class RobotProgram:
     def _take_lag(self) -> None:
         """Learn from what acted, once it is known how late: given, or by all random decisions.
 
-        Then follow it by the newest decisions, where it was not given and there is a model.
+        Then follow it, unless it was given, by a model of single observations (no history).
         """
         learner, folder, count = self.learner, self.loop.folder, self.loop.agent.random_steps
         if learner.lag is None and learner.read >= count:

@@ -123,7 +123,7 @@ def _contracts(whole: Any, spec: Spec) -> Iterator[Contract]:
     """
     for owner, name, protocol, part in reversed([*parts(whole)]):
         protocol = protocol or (ROLES.get(name) if of_user(owner) else None)
-        if protocol is not None and getattr(part, "split", None) is None:  # but that of its parts
+        if protocol is not None and getattr(part, "split", None) is None:  # else its parts are
             yield Contract(part, protocol, spec, owner=owner, name=name)
 
 
