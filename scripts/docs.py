@@ -77,7 +77,7 @@ and a planner that acts with both, in JAX and MuJoCo.
 ![A trained humanoid runs](docs/humanoid.jpg)
 ```
 
-* **[Train a robot](README.md)**: two commands, three to four minutes on two cores
+* **[Train a robot](README.md)**: two commands, three to eight minutes on two cores
 * **[Give a trained robot a new goal](docs/results/planning.md)**: it plans, nothing is trained
 * **[Bring your own](docs/howto.md)**: robot, task, method or planner
 """  # the first page, on which robots run on a click
