@@ -169,6 +169,7 @@ class HostProgram:
                 at = np.array([i, first + i * envs, made, sent.ticket], np.int32)
                 state, rows = self.act(state, rows, u, got, at)
                 u = sent.next(state.memory.count)
+                u = np.nan_to_num(u)  # a learner that has diverged must not end the others
                 got = Outcome(*(x.reshape(*each, *x.shape[1:]) for x in self.copies.step(u)))
                 u, made = u.reshape(*each, -1), loop.early and i + 1 < int(rounds)
                 if not made:

@@ -106,6 +106,17 @@ def test_a_row_leads_to_the_next_step_of_its_episode(num_envs):
     assert (following == (rows.terminated + rows.truncated)[:-1]).all()
 
 
+def test_a_learner_that_has_diverged_does_not_end_the_others():
+    loop = loop_of(agents(1)[1], (0, 1), ROUNDS)
+    begun = loop.init()
+    spoiled = jax.tree.map(lambda leaf: leaf.at[1].set(jnp.nan), begun.learners["policy"].policy)
+    policy = begun.learners["policy"].replace(policy=spoiled)
+    program = loop.compile(begun)
+    state = begun.replace(learners=begun.learners | {"policy": policy})
+    state, _ = program(state, jnp.int32(1000), jnp.int32(ROUNDS))
+    assert jnp.isfinite(state.env.obs).all()
+
+
 def test_a_resumed_run_marks_where_its_episode_was_cut():
     loop, state = filled(1, rounds=3)
     count = np.array(state.memory.count)
