@@ -176,12 +176,16 @@ class SoftActorCritic(ActorCritic):
         )
 
     def evaluated(
-        self, state: ActorCriticState, paths: Imagined, steps: int, params: Params
+        self, state: Any, paths: Imagined, steps: int, params: Params, paid: Array | float = jnp.inf
     ) -> tuple[ActorCriticState, dict[str, Array]]:
-        """`state` after a step of the critic to the returns y of the first `steps` decisions."""
+        """`state` after a step of the critic to the returns y of the first `steps` decisions.
+
+        paid: [] at most in a decision; |y| is limited to this, and the aimed entropy, for ever.
+        """
         alpha = jnp.exp(state.log_alpha)
         last = self.critic.value(state.target, paths.x[-1], paths.u[-1])
-        y = returns.soft(paths, alpha, self.discount, last)[1]
+        limit = (paid + alpha * abs(self._aim(paths))) / (1 - self.discount)
+        y = jnp.clip(returns.soft(paths, alpha, self.discount, last)[1], -limit, limit)
         first = slice(steps)
         x, u = (each[first].reshape(-1, each.shape[-1]) for each in (paths.x, paths.u))
         y, reached = y[first].ravel(), returns.reached(paths)[first].ravel()
@@ -208,9 +212,8 @@ class SoftActorCritic(ActorCritic):
         self, state: ActorCriticState, along: Along, params: Params
     ) -> tuple[ActorCriticState, dict[str, Array]]:
         """`state` after a step of the temperature, and the target following; metrics."""
-        aim = -along.paths.u.shape[-1] if self.target_entropy is None else self.target_entropy
         rate = self.factor(params) * self.alpha_learning_rate
-        grad, optimiser = along.entropy - aim, state.alpha_optimiser
+        grad, optimiser = along.entropy - self._aim(along.paths), state.alpha_optimiser
         log_alpha, optimiser = adam_step(rate, grad, optimiser, state.log_alpha)
         target = self.followed(state.target, state.critic)
         metrics = {
@@ -221,6 +224,10 @@ class SoftActorCritic(ActorCritic):
         }
         state = state.replace(target=target, log_alpha=log_alpha, alpha_optimiser=optimiser)
         return state, metrics
+
+    def _aim(self, paths: Imagined) -> float:
+        """The entropy that the temperature aims at."""
+        return -paths.u.shape[-1] if self.target_entropy is None else self.target_entropy
 
 
 def adam_step(learning_rate: Array | float, grads: Any, state: Any, params: Any) -> tuple[Any, Any]:

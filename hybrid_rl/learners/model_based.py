@@ -7,9 +7,10 @@ From each of B start states the policy makes H decisions in the model,
 with c_t the chance that the episode continues. The policy maximises their soft return V_0; the
 critic learns the y_t of the first `value_steps` of the same decisions (`core.returns`); with
 none of them, from one decision, as in SAC. The start states are those of branches that go on from
-one update to the next (`core.branches`), or of the replay memory. Sources: stochastic value
-gradients (Heess et al. 2015), MAAC (Clavera et al. 2020), model-based value expansion (Feinberg et
-al. 2018), MBPO (Janner et al. 2019).
+one update to the next (`core.branches`), or of the replay memory. The rewards of the memory, not
+imagined ones, scale the critic and limit y: where a model leaves its data both would diverge.
+Sources: stochastic value gradients (Heess et al. 2015), MAAC (Clavera et al. 2020), model-based
+value expansion (Feinberg et al. 2018), MBPO (Janner et al. 2019).
 """
 
 from dataclasses import KW_ONLY
@@ -30,10 +31,11 @@ from hybrid_rl.types import Batch, Imagined, Params, Spec
 
 @struct.dataclass
 class ModelBasedState:
-    """The actor and critic, and the branches."""
+    """The actor and critic, the branches, and what decisions earned."""
 
     learner: ActorCriticState
     branches: Branches | None  # None: none are kept
+    largest: Array  # [] absolute reward of a decision in the batches so far
 
 
 @part
@@ -74,7 +76,7 @@ class ModelBased(SoftActorCritic):
         if self.branch_steps and self.branch_memory:
             sizes = self.batch_size, self.branch_memory, spec.n, spec.act
             kept = branches.begin(*sizes, self.branch_steps, whole=not self._value_steps)
-        return ModelBasedState(self.begun(key, spec, self.alpha), kept)
+        return ModelBasedState(self.begun(key, spec, self.alpha), kept, jnp.zeros(()))
 
     def having(self, state: ModelBasedState, policy: Any) -> ModelBasedState:
         """`state` with these parameters of its policy."""
@@ -88,23 +90,24 @@ class ModelBased(SoftActorCritic):
         self, state: ModelBasedState, params: Params, batch: Batch, key: Array
     ) -> tuple[ModelBasedState, dict[str, Array]]:
         """One step of critic, policy, temperature and target. The key is consumed."""
-        m, of_critic = batch.action.shape[-1], {}
+        m, of_critic, paid = batch.action.shape[-1], {}, batch.reward
+        largest = jnp.maximum(state.largest, jnp.abs(paid).max())
         kept, batch, key = self._started(state.branches, params, batch, key)
-        learner = self.observed(state.learner, batch)
+        learner = self.observed(state.learner, batch._replace(reward=paid))
         acting, ahead = jax.random.split(key)
         if not self._value_steps:  # from decisions that were made, before the policy changes
             noise = jax.random.normal(acting, (2, *batch.action.shape))[0]
             made = self.recorded(learner, batch, noise)
-            learner, of_critic = self.evaluated(learner, made, 1, params)
+            learner, of_critic = self.evaluated(learner, made, 1, params, largest)
 
         def imagine(policy: Any) -> Imagined:
             return self.imagine(params._replace(policy=policy), batch.obs, m, ahead)
 
         learner, along = self.improved(learner, imagine, params)
-        if self._value_steps:
-            learner, of_critic = self.evaluated(learner, along.paths, self._value_steps, params)
+        if count := self._value_steps:
+            learner, of_critic = self.evaluated(learner, along.paths, count, params, largest)
         learner, metrics = self.settled(learner, along, params)
-        return ModelBasedState(learner, kept), of_critic | metrics
+        return ModelBasedState(learner, kept, largest), of_critic | metrics
 
     def _started(
         self, kept: Branches | None, params: Params, batch: Batch, key: Array

@@ -62,16 +62,15 @@ class Imagination:
         obs = jax.vmap(episode.reset)(jax.random.split(resetting, self.starts)).obs
         seen, model = history.seen(episode.spec, episode.history), self.learner.model
         first_x = jax.vmap(lambda o: model.lift(params.model, history.first(o, seen.obs)))(obs)
-        states = self.walked(params, first_x, walking)
+        walked = self.walked(params, first_x, walking)
         spec, size = lifted_spec(model, seen), self.learner.batch_size
         begun = self.learner.having(self.learner.init(first, spec), params.policy)
 
         def update(state: Any, at: tuple[Array, Array]) -> tuple[Any, None]:
             number, key = at
             drawing, learning = jax.random.split(key)
-            x = states[jax.random.randint(drawing, (size,), 0, len(states))]
-            none = jnp.zeros(size)
-            batch = Batch(x, jnp.zeros((size, spec.act)), none, none, none, x)
+            rows = jax.random.randint(drawing, (size,), 0, len(walked.reward))
+            batch = jax.tree.map(lambda leaf: leaf[rows], walked)
             now = params._replace(**self.learner.params(state))
             after = self.learner.update(state, now, batch, learning)[0]
             frozen = self.learner.having(after, now.policy)
@@ -84,22 +83,25 @@ class Imagination:
         surely = gains.mean() > self.doubt * gains.std()  # false where one is not finite
         return where(surely, new, params), surely
 
-    def walked(self, params: Params, x: Array, key: Array) -> Array:
-        """States [starts * walk, n] from x [starts, n] on. The key is consumed."""
-        policy, model = self.learner.policy, self.learner.model
+    def walked(self, params: Params, x: Array, key: Array) -> Batch:
+        """Decisions [starts * walk] from x [starts, n] on. The key is consumed."""
+        policy, model, reward = self.learner.policy, self.learner.model, self.learner.reward
         strengths = jnp.resize(jnp.array(self.strengths), (len(x), 1))
 
-        def forward(x: Array, key: Array) -> tuple[Array, Array]:
+        def forward(x: Array, key: Array) -> tuple[Array, Batch]:
             acting, moving, choosing = jax.random.split(key, 3)
             mean = policy.mean(params.policy, x)
             noise = jax.random.normal(acting, mean.shape)
             u = strengths * policy.sample(params.policy, x, noise)[0]
             moved = jax.random.normal(moving, x.shape)
             after = model.draw(params.model, x, u, moved, choosing)
-            return where(jnp.isfinite(after).all(-1), after, x), x
+            after = where(jnp.isfinite(after).all(-1), after, x)
+            r = jax.vmap(reward.outcome, (None, 0, 0, 0))(params, x, u, after)[0]
+            return after, Batch(x, u, r, none, none, after)
 
-        keys = jax.random.split(key, self.walk)
-        return jax.lax.scan(forward, x, keys)[1].reshape(-1, x.shape[-1])
+        keys, none = jax.random.split(key, self.walk), jnp.zeros(len(x))
+        rows = jax.lax.scan(forward, x, keys)[1]
+        return jax.tree.map(lambda leaf: leaf.reshape(-1, *leaf.shape[2:]), rows)
 
     def returns(self, params: Params, states: Array) -> Array:
         """The mean return [members] of the policy by each member, from the first of `states`."""

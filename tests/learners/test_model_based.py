@@ -142,7 +142,7 @@ def test_the_critic_s_error_counts_where_it_is_reached_and_its_goal_is_the_targe
     def made(state: Any) -> tuple:
         params = PARAMS._replace(policy=state.policy)
         paths = learner.imagine(params, X, 1, jax.random.split(KEY)[1])
-        found = learner.update(ModelBasedState(state, None), params, START, KEY)[1]
+        found = learner.update(ModelBasedState(state, None, jnp.inf), params, START, KEY)[1]
         last = [critic.value(q, paths.x[-1], paths.u[-1]) for q in (state.target, state.critic)]
         return paths, found, last, jax.vmap(critic.all, (None, 0, 0))(state.critic, *paths[:2])
 
@@ -185,7 +185,7 @@ def test_without_imagined_decisions_it_is_soft_actor_critic() -> None:
     def updated() -> tuple:
         first = begun(sac, spec)
         by_sac = sac.update(first, Params(), batch, KEY)
-        by_ours = ours.update(ModelBasedState(first, None), Params(), batch, KEY)
+        by_ours = ours.update(ModelBasedState(first, None, jnp.inf), Params(), batch, KEY)
         return (by_ours[0].learner, by_ours[1]), by_sac
 
     for mine, its in zip(*map(jax.tree.leaves, updated()), strict=True):
@@ -215,7 +215,7 @@ def test_the_critic_learns_the_imagined_returns(
 ) -> None:
     """Q = 1 / (1 - c / 2), at three states, at the first, or by one decision, as in SAC.
 
-    The rewards of the batch do not matter.
+    The rewards of the batch, which are larger, do not matter.
     """
     world: Any = Staying(chance)
     policy, critic = TanhGaussian(hidden=(32,)), EnsembleQ(hidden=(32, 32))
@@ -231,3 +231,35 @@ def test_the_critic_learns_the_imagined_returns(
     q = critic.value(state.learner.critic, jnp.zeros(1), jnp.zeros(1))
     assert float(q) == pytest.approx(wanted, abs=0.05)
     assert int(state.branches.count) == 1000
+
+
+class Leaving(Staying):
+    """A model that doubles the state, which is paid."""
+
+    def draw(self, params: Any, x: Array, u: Array, noise: Array, key: Array) -> Array:
+        return 2 * x
+
+    def outcome(self, params: Any, x: Array, u: Array, after: Array) -> tuple[Array, Array]:
+        """The state, without an end."""
+        return x[0], jnp.float32(-20)
+
+
+@pytest.mark.parametrize("value_steps", [None, 0])
+def test_the_critic_stays_within_what_decisions_earned(value_steps: int | None) -> None:
+    """3 in each of 1 / (1 - 0.5) decisions, though 2^9 are imagined."""
+    world: Any = Leaving(1.0)
+    policy, critic = TanhGaussian((32,)), EnsembleQ((32, 32), normalise=True, scale=True)
+    rates = {"critic_learning_rate": 3e-3, "alpha_learning_rate": 1e-9, "alpha": 1e-6}
+    learner = ModelBased(
+        *(policy, critic, world, world),
+        **{"steps": 3, "value_steps": value_steps, "branch_steps": 9, "branch_memory": 576},
+        **{"discount": 0.5, "tau": 0.05, "batch_size": 64, **rates},
+    )
+    zero, one = jnp.zeros(64), jnp.ones((64, 1))
+    seen = Batch(one, one, zero - 3, zero, zero, one)
+    state, _ = learned(learner, Spec(obs=1, act=1, dt=1.0), lambda key: seen, 1000)
+    q = jax.vmap(critic.value, (None, 0, None))(
+        state.learner.critic, jnp.array([[4.0], [16.0], [256.0]]), jnp.zeros(1)
+    )
+    assert q.min() > 3
+    assert q.max() < 6.6

@@ -115,7 +115,7 @@ def test_a_walk_stays_where_the_model_knows_no_next_state() -> None:
     model: Any = Lost(WORLD)
     x = jnp.array([[0.5, 0.0, 0.0, 0.0], [-9.0, 0.0, 0.0, 0.0]])
     part = Imagination(replace(LEARNER, model=model), walk=5)
-    states = np.asarray(part.walked(PARAMS, x, jax.random.key(0))).reshape(5, 2, -1)
+    states = np.asarray(part.walked(PARAMS, x, jax.random.key(0)).obs).reshape(5, 2, -1)
     np.testing.assert_array_equal(states[:, 0], np.tile(x[0], (5, 1)))
     assert np.isfinite(states).all()
     assert (states[1:, 1] != states[:-1, 1]).any(1).all()
