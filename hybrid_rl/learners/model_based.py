@@ -48,8 +48,7 @@ class ModelBased(SoftActorCritic):
     steps: Natural = 5  # H; 0: the policy maximises the critic at the start states, as in SAC
     value_steps: int | None = None  # of the H decisions, at whose states the critic learns; None: H
     branch_steps: Natural = 20  # longest branch [decisions]; 0: starts at the states of the batch
-    branch_margin: Positive | None = None  # ranges beyond real states where one ends; None: none,
-    # or 3 with a history, in whose rates a model that has learned little diverges
+    branch_margin: Positive | None = None  # [ranges] beyond data where it ends; 3 with a history
     branch_memory: int = 25_600  # imagined transitions that are kept; 0: drawn for each update
     alpha: Positive = 0.1  # initial temperature
     discount: Discount = 0.995
@@ -117,13 +116,11 @@ class ModelBased(SoftActorCritic):
             return kept, batch, key
         drawing, key = jax.random.split(key)
         step = branches.transitions(params, self.policy, self.model, self.reward)
-        m = batch.action.shape[-1]
+        given = step, batch.obs, batch.action.shape[-1], self.branch_steps
         if kept is None:
-            return None, branches.sample_fresh(step, batch.obs, m, self.branch_steps, drawing), key
+            return None, branches.sample_fresh(*given, drawing), key
         extending, recalling = jax.random.split(drawing)
-        kept = branches.extended(
-            kept, step, batch.obs, m, self.branch_steps, extending, self.branch_margin
-        )
+        kept = branches.extended(kept, *given, extending, self.branch_margin)
         return kept, branches.sample_kept(kept, recalling), key
 
     def imagine(self, params: Params, x: Array, m: int, key: Array) -> Imagined:
