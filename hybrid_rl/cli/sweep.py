@@ -66,8 +66,8 @@ def labels(jobs: Sequence[Sequence[str]]) -> dict[int, str]:
 class Task:
     """A job of a sweep as Hydra calls it; its errors become its result."""
 
-    def __init__(self, job: Callable[[DictConfig], Any], called: str = "job") -> None:
-        self.job, self.called = job, called
+    def __init__(self, job: Callable[[DictConfig], Any]) -> None:
+        self.job = job
         self.results: dict[int, Result] = {}  # number of a job -> its result
         self.labels: dict[int, str] = {}  # the overrides in which the jobs differ
 
@@ -75,7 +75,7 @@ class Task:
         """Run one job."""
         hydra = HydraConfig.get()
         number = int(hydra.job.num)
-        name = f"{self.called} {number}"
+        name = f"job {number}"
         print(f"{name}: {self.labels[number]}", flush=True)
         result: Result = {"code": 0, "line": "done"}
         self.results[number] = result
@@ -112,7 +112,10 @@ class Sweeper:
 
     def sweep(self, arguments: list[str]) -> Any:
         """Run all jobs; end the process with the highest exit code if one failed."""
-        require_slurm(str(self.config.hydra.runtime.choices["hydra/launcher"]))
+        launcher = self.config.hydra.runtime.choices["hydra/launcher"]
+        if launcher == "submitit_slurm" and not shutil.which("srun"):
+            line = "no srun here; start it where Slurm is, or try hydra/launcher=submitit_local"
+            raise UsageError(f"hydra/launcher={launcher}: {line}")
         parser = OverridesParser.create(config_loader=self.hydra_context.config_loader)
         given = [*(f"{k}={v}" for k, v in self.params.items()), *typed(arguments)]
         jobs = jobs_of(parser.parse_overrides(given))
@@ -142,11 +145,12 @@ class Sweeper:
 
     def _checked(self, jobs: Sequence[Sequence[str]]) -> list[DictConfig]:
         """What the runs of the jobs read, after all checks that need no compilation."""
-        self.task.labels = labels(jobs)
+        self.task.labels, loader = labels(jobs), self.hydra_context.config_loader
         configs = []
         for number, job in enumerate(jobs):
             with self._naming(number):
-                configs.append(self._composed(job))
+                composed = loader.load_sweep_config(self.config, self._forced(job))
+                configs.append(configuration.read(composed))
         for number, (job, config) in enumerate(zip(jobs, configs, strict=True)):
             with self._naming(number):
                 self._check(job, config.copy())
@@ -159,12 +163,8 @@ class Sweeper:
             yield
         except (UsageError, *UNCOMPOSED) as error:
             line = error if isinstance(error, UsageError) else explain(error)
-            label = f"{self.task.called} {number}: {self.task.labels[number]}"
+            label = f"job {number}: {self.task.labels[number]}"
             raise UsageError(f"{line} ({label.removesuffix(': ')})") from error
-
-    def _composed(self, job: Sequence[str]) -> DictConfig:
-        loader = self.hydra_context.config_loader
-        return configuration.read(loader.load_sweep_config(self.config, self._forced(job)))
 
     def _check(self, job: Sequence[str], config: DictConfig) -> None:
         """Raise UsageError if a job cannot run, alone or with those that share its program.
@@ -241,13 +241,6 @@ def show(cells: Sequence[Sequence[str]]) -> None:
     for row in cells:
         columns = [f"{text:{width}}" for text, width in zip(row, widths, strict=True)]
         print("  ".join(columns).rstrip())
-
-
-def require_slurm(launcher: str) -> None:
-    """Raise UsageError for a launcher that needs Slurm's commands where there are none."""
-    if launcher == "submitit_slurm" and not shutil.which("srun"):
-        line = "no srun here; start it where Slurm is, or try hydra/launcher=submitit_local"
-        raise UsageError(f"hydra/launcher={launcher}: {line}")
 
 
 def launch(launcher: Any, jobs: Sequence[list[str]], results: dict[int, Result]) -> None:

@@ -252,7 +252,9 @@ def _run(job: Job, handled: Handler, output: Output, first: Start | None = None)
     with ExitStack() as stack:
         loop = job.loop()
         shelf = job.shelf(loop, output, stack)
-        progress = stack.enter_context(_progress(run, output.progress))
+        rounds = -(-config.total_steps // config.num_envs)  # the last may end beyond total_steps
+        shown = rounds * config.num_envs, f"{config.task} {config.algo}", max(run.agent.changes())
+        progress = stack.enter_context(Progress(*shown, output.progress))
         progress.note("\n".join(_notes(job)))
         values: dict[str, Any] = {name: config[name] for name in Schedule.__dataclass_fields__}
         values["eval_modes"] = tuple(m for m in config.eval_modes if m in config.controllers)
@@ -336,11 +338,3 @@ def _done(config: DictConfig, run_dir: Path) -> dict[str, Any] | None:
         return None
     newest = run_dir / "checkpoints" / str(summary["total_steps"])
     return summary | {"run_dir": str(run_dir)} if checkpoint.verify(newest) is None else None
-
-
-def _progress(run: Run, visible: bool) -> Progress:
-    """The display of a run, whose last round may end beyond total_steps."""
-    config = run.config
-    rounds = -(-config.total_steps // config.num_envs)
-    label, steady = f"{config.task} {config.algo}", max(run.agent.changes())
-    return Progress(rounds * config.num_envs, label, steady, visible)

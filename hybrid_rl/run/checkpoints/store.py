@@ -94,9 +94,8 @@ class Shelf:
     def write(self, new: Sequence[Row], wall_s: float) -> None:
         """Append rows {"step", "learner", name: number or word, ...}, with the wall time [s]."""
         for log, share in zip(self.logs, self.shares(), strict=True):
-            rows = [row.copy() for row in new if share.start <= row["learner"] < share.stop]
-            seeds = [self.loop.seeds[row.pop("learner")] for row in rows]
-            for row, seed in zip(rows, seeds, strict=True):
+            for row in (row.copy() for row in new if share.start <= row["learner"] < share.stop):
+                seed = self.loop.seeds[row.pop("learner")]
                 log.write([{"step": row.pop("step"), "seed": seed} | row | {"wall_s": wall_s}])
 
     def save(self, state: Any, gathered: Metrics, record: Record) -> None:
