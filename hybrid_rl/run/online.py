@@ -263,11 +263,9 @@ class OnlineLearner:
             self._thread.join()
 
     def __enter__(self) -> Self:
-        """Itself; its thread ends with the block."""
         return self
 
     def __exit__(self, *_: object) -> None:
-        """End the thread."""
         self.close()
 
     def _check(self) -> None:

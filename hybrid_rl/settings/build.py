@@ -21,13 +21,7 @@ from hybrid_rl.fields import FieldError
 from hybrid_rl.files.targets import build as build_part
 from hybrid_rl.protocols import Controller
 from hybrid_rl.settings.complete import LACKING, complete, refusal, select
-from hybrid_rl.settings.compose import (
-    UNCOMPOSED,
-    complete_names,
-    explain,
-    keys_of,
-    settings_keys,
-)
+from hybrid_rl.settings.compose import UNCOMPOSED, complete_names, explain, keys_of, settings_keys
 from hybrid_rl.settings.groups import CONF, groups, register, search_path
 from hybrid_rl.settings.values import (
     COUNTS,
@@ -280,7 +274,10 @@ def _usage(config: DictConfig, who: str | None = None) -> Iterator[None]:
         raise
     except FieldError as error:
         part, _, field = error.path.rpartition(".")
-        error.path = f"{_shortest(config, part)}.{field}" if part else field
+        node: Any = OmegaConf.select(config, part) if part else None
+        if isinstance(node, DictConfig):  # policy_learner for learners.policy
+            short = next((name for name, other in config.items() if other == node), part)
+            error.path = f"{short}.{field}"
         if not (field == "world" and error.lacks):
             raise UsageError(error.line) from error
         who = part if part in PAID else who or config.get("algo") or "this"
@@ -288,10 +285,3 @@ def _usage(config: DictConfig, who: str | None = None) -> Iterator[None]:
         raise UsageError(line) from error
     except ValueError as error:
         raise UsageError(str(error)) from error
-
-
-def _shortest(config: DictConfig, where: str) -> str:
-    """The key of a part by its name: policy_learner for learners.policy."""
-    part: Any = OmegaConf.select(config, where)
-    same = [name for name, node in config.items() if node == part and isinstance(part, DictConfig)]
-    return str(same[0]) if same else where

@@ -9,6 +9,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from hybrid_rl.core.batching import join
 from hybrid_rl.errors import MisfitError
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.logs.log import RunLog
@@ -60,8 +61,7 @@ def read_part(
 
 def concatenated(states: Sequence[Any]) -> Any:
     """The trees [S, ...] of the learners of several runs as one."""
-    first, *others = states
-    return jax.tree.map(lambda *each: jnp.concatenate(each), *states) if others else first
+    return join(*states) if len(states) > 1 else states[0]
 
 
 def each_learner(change: Callable[[Any], Any], memory: Any) -> Any:
