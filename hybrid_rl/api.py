@@ -166,7 +166,8 @@ def train(
         result = Result(launch.train(runs, given, interrupt.as_call, output))
     if result["signal"] is not None:
         signal.raise_signal(result["signal"])
-    output.raise_problem()
+    if output.problem is not None:
+        raise output.problem
     return result
 
 

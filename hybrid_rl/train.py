@@ -28,7 +28,7 @@ from typing import Any
 
 from omegaconf import DictConfig
 
-from hybrid_rl.api import OnRow, train
+from hybrid_rl.api import train
 from hybrid_rl.cli import command, hydra_line, interrupt
 from hybrid_rl.errors import DivergenceError
 from hybrid_rl.run import folder, launch, members, session
@@ -38,11 +38,10 @@ from hybrid_rl.run.logs.records import result_line
 from hybrid_rl.settings.words import typed_values
 
 
-def _job(config: DictConfig, typed: Sequence[str], on_row: OnRow | None = None) -> dict[str, Any]:
-    """One run of the command; returns what summary.json holds. on_row: as of `train`."""
-    runs, output = members.expand_sweep(config, typed), Output(on_row)
+def _job(config: DictConfig, typed: Sequence[str]) -> dict[str, Any]:
+    """One run of the command; returns what summary.json holds."""
+    runs, output = members.expand_sweep(config, typed), Output()
     summary = launch.train(runs, typed_values(typed), interrupt.as_call, output)
-    output.raise_problem()
     run_dir = Path(summary["run_dir"])
     if summary["signal"] is None:
         from hybrid_rl.analysis import learning_curves  # imports matplotlib

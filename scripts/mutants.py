@@ -41,8 +41,8 @@ MUTANTS = {
     ),
     "adjoint without the policy's feedback": Mutant(
         "hybrid_rl/core/adjoint.py",
-        "return j_x + jax.vjp(policy, x)[1](g)[0] + f_x, g",
-        "return j_x + f_x, g",
+        "rho = j_x + jax.vjp(policy, x)[1](g)[0] + f_x",
+        "rho = j_x + f_x",
         "tests/core tests/controllers",
     ),
     "mode insertion gradient of the other sign": Mutant(

@@ -27,7 +27,6 @@ MAINS = {
     "figures": figures.main,
     "list": listed.main,
 }
-COUNT = "must be a whole number, 1 or more"
 NO_KEY = "hybrid_stochastic has no such key"
 USAGE = [  # overrides of train, after task=pendulum algo=hybrid_stochastic; words of the line
     ("task=pendulm", "task=pendulm: unknown; choose one of ant, "),
@@ -46,7 +45,6 @@ USAGE = [  # overrides of train, after task=pendulum algo=hybrid_stochastic; wor
     ("run_dir=läufe", "run_dir=läufe: cannot be read; write key=value, text as 'key="),
     ("task=pendulum,cartpole", "Ambiguous value for argument 'task=pendulum,cartpole'; 1. To "),
     ("hydra/launcher=submitit_slurm", "submitit_slurm: is for the jobs of a sweep; add -m"),
-    ("num_envs=2.5", f"num_envs=2.5: {COUNT}"),
     ("seed=4294967290 num_seeds=8", "must be a whole number, from 0 to 4294967288"),
     ("policy.hidden=16", "policy.hidden=16: must be a list"),
     ("planner.policy.hidden=[3]", "planner.policy={'hidden': [3]}: must be a part, or null"),

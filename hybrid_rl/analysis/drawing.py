@@ -29,12 +29,7 @@ GIF_FPS = 20.0  # [1/s] at most
 
 
 def draw(
-    scene: str,
-    qpos: np.ndarray,
-    out: str | Path,
-    fps: float,
-    width: int = 640,
-    height: int = 480,
+    scene: str, qpos: np.ndarray, out: str | Path, fps: float, width: int = 640, height: int = 480
 ) -> Path:
     """Writes a video, H.264 for .mp4, endless for .gif; for .png the picture halfway.
 
@@ -127,19 +122,16 @@ class Film(NamedTuple):
     success: bool | None  # at the end; None: the task has no measure of it
 
 
-def episode(
-    trained: Any, mode: str = "full", seed: int | None = None, steps: int = 0, number: int = 0
-) -> Film:
-    """One episode of a loaded run.
+def episode(trained: Any, mode: str = "full", seed: int | None = None, steps: int = 0) -> Film:
+    """The first evaluation episode of a loaded run.
 
     trained: what `hybrid_rl.run.saved.load` returns. seed: of one of its learners; None is
-    the first. steps: at most this many decisions; 0 is the task's own limit. number: of the
-    evaluation's episode, from 0.
+    the first. steps: at most this many decisions; 0 is the task's own limit.
     """
     seed = int(trained.seeds[0]) if seed is None else seed
     world = replace(trained.episode, steps=steps or trained.episode.steps)
     controller, params = trained.learner(seed, mode, world=True)
-    return film(world, controller, params, evaluation_keys(seed, number + 1)[-1])
+    return film(world, controller, params, evaluation_keys(seed, 1)[0])
 
 
 def film(world: Any, controller: Any, params: Any, key: Any) -> Film:

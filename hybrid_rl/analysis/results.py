@@ -109,7 +109,11 @@ def find(runs: str | Path | Iterable[str | Path], key: str = "runs") -> list[Pat
     runs: one, or several, also as "a/*,b/*" or "[a/*,b/*]". key: the argument that named them.
     """
     given = [runs] if isinstance(runs, (str, Path)) else runs
-    matches = [match for each in given for match in _matching(each)]
+    matches: list[Path] = []
+    for each in given:
+        path = Path(each).expanduser()
+        exists = str(each) and path.exists()
+        matches += [path] if exists else map(Path, glob.glob(str(path), recursive=True))
     if isinstance(runs, str) and "," in runs and not matches:
         text = runs[1:-1] if runs[0] + runs[-1] == "[]" else runs
         several = filter(None, map(str.strip, text.split(",")))
@@ -122,14 +126,6 @@ def find(runs: str | Path | Iterable[str | Path], key: str = "runs") -> list[Pat
         more = f" and {len(files) - 1} more" if len(files) > 1 else ""
         problem = f"{files[0]}{more}: no row of metrics yet"
     raise UsageError(f"{key}={runs}: {problem}")
-
-
-def _matching(run: str | Path) -> list[Path]:
-    """What a glob matches; what exists is itself."""
-    path = Path(run).expanduser()
-    if str(run) and path.exists():
-        return [path]
-    return [*map(Path, glob.glob(str(path), recursive=True))]
 
 
 def redrawn(
@@ -158,7 +154,7 @@ def differences(runs: Sequence[RunFolder], expected: Sequence[str] = ()) -> list
     columns = {key: _column(settings, key) for key in set().union(*settings)}
     differ = {key: c for key, c in columns.items() if len(set(c)) > 1 and c not in known}
     compared = {
-        (_last(key), column)
+        (key.rpartition(".")[2], column)
         for key, column in differ.items()
         if key not in NOT_SETTINGS
         and not key.endswith(IMPLEMENTATION)
@@ -171,7 +167,7 @@ def differences(runs: Sequence[RunFolder], expected: Sequence[str] = ()) -> list
     }
     shortest: dict[tuple[str, tuple[str, ...]], str] = {}
     for key in sorted(differ, key=lambda key: (key.count("."), len(key), key)):
-        if (name := (_last(key), differ[key])) in compared:
+        if (name := (key.rpartition(".")[2], differ[key])) in compared:
             shortest.setdefault(name, key)
     return [
         {key.removesuffix("._target_"): column[i] for (_, column), key in sorted(shortest.items())}
@@ -207,10 +203,6 @@ def _column(settings: Sequence[Mapping[str, Any]], key: str) -> tuple[str, ...]:
         return SET if any(name.startswith(f"{key}.") for name in each) else UNSET
 
     return tuple(map(one, settings))
-
-
-def _last(key: str) -> str:
-    return key.rpartition(".")[2]
 
 
 def _parents(key: str) -> list[str]:

@@ -145,7 +145,13 @@ def read(
     groups = groups or {}
     line = sys.argv[1:]
     if set(HELP) & set(line):
-        print(help_text(doc, known, groups))
+        lines = [(f"{each.name}={_written(each.default)}", each) for each in known]
+        rows = [(head, ("needed; " if each.needed else "") + each.about) for head, each in lines]
+        rows += [(f"{group}.KEY=VALUE", about) for group, about in groups.items()]
+        rows.append(("--help", "this text"))
+        width = min(max(len(head) for head, _ in rows), 34)
+        table = "\n".join(f"  {head:{width}}  {about}" for head, about in rows)
+        print(f"{inspect.cleandoc(doc or '')}\n\nArguments, with their defaults:\n{table}")
         sys.exit(0)
     named = {argument.name: argument for argument in known}
     values, changes = {argument.name: argument.default for argument in known}, {}
@@ -166,25 +172,10 @@ def read(
     return values, changes
 
 
-def help_text(
-    doc: str | None, known: Sequence[Argument], groups: Mapping[str, str] | None = None
-) -> str:
-    """What --help prints."""
-    rows = [
-        (f"{each.name}={'' if each.default is None else _written(each.default)}", each)
-        for each in known
-    ]
-    lines = [(head, ("needed; " if each.needed else "") + each.about) for head, each in rows]
-    lines += [(f"{group}.KEY=VALUE", about) for group, about in (groups or {}).items()]
-    lines.append(("--help", "this text"))
-    width = min(max(len(head) for head, _ in lines), 34)
-    table = "\n".join(f"  {head:{width}}  {about}" for head, about in lines)
-    return f"{inspect.cleandoc(doc or '')}\n\nArguments, with their defaults:\n{table}"
-
-
 def _written(value: Any) -> str:
-    if isinstance(value, bool):
-        return str(value).lower()  # as it is typed
+    """A default as it is typed."""
+    if value is None or isinstance(value, bool):
+        return "" if value is None else str(value).lower()
     return ",".join(value) if isinstance(value, list) else f"{value}"
 
 

@@ -21,21 +21,18 @@ install = interrupt.install  # before what takes long to import: Ctrl-C ends it 
 
 def report(error: BaseException) -> NoReturn:
     """End the process with one line and the right code, or with a traceback for a fault of ours."""
-    if isinstance(error, BrokenPipeError) and _unread():
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python writes at its end
-        sys.exit(1)
+    if isinstance(error, BrokenPipeError):
+        poll = polling.poll()
+        poll.register(sys.stdout.fileno(), 0)
+        if any(event & polling.POLLERR for _, event in poll.poll(0)):  # unread, as in `| head`
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, sys.stdout.fileno())  # for what Python writes at its end
+            sys.exit(1)
     result = diagnosis(error)
     if result is None:
         traceback.print_exception(error)  # begins where it was caught, without Hydra's frames
         sys.exit(1)
     _fail(*result)
-
-
-def _unread() -> bool:
-    """Whether nothing reads the output any more, as in `| head`."""
-    poll = polling.poll()
-    poll.register(sys.stdout.fileno(), 0)
-    return any(event & polling.POLLERR for _, event in poll.poll(0))
 
 
 def diagnosis(error: BaseException) -> tuple[int, str] | None:

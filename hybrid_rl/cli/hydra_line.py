@@ -37,7 +37,7 @@ Options:
   --help           this text
 
 `python -m hybrid_rl.list` shows the tasks, the methods and the experiments."""
-Job = Callable[..., Any]  # (composed configuration, overrides); in a study also what gets its rows
+Job = Callable[[DictConfig, Sequence[str]], Any]  # (composed configuration, overrides)
 
 
 def main(job: Job) -> None:
@@ -65,13 +65,13 @@ def main(job: Job) -> None:
 
 
 def _sweep(job: Job, words: Sequence[str], folders: Sequence[str]) -> None:
-    """Let Hydra's sweeper, cli.sweep or tools.tuner, run the jobs."""
+    """Let Hydra's sweeper, cli.sweep, run the jobs."""
 
-    def one(config: DictConfig, *more: Any) -> Any:
+    def one(config: DictConfig) -> Any:
         made = HydraConfig.get()
         with open_dict(config):
             config.hydra = made
-        return job(configuration.read(config), overrides.of_job(made), *more)
+        return job(configuration.read(config), overrides.of_job(made))
 
     names = groups(*folders)
     # a choice of one value is for the jobs, too: the default method may lack the part

@@ -13,7 +13,7 @@ import sys
 import time
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +30,7 @@ from hybrid_rl.errors import UsageError, relative
 from hybrid_rl.files.atomic import write_text
 from hybrid_rl.run import members as program
 from hybrid_rl.run.checkpoints import checkpoint
-from hybrid_rl.run.folder import members, new_folder
+from hybrid_rl.run.folder import members, new_folder, remove_empty
 from hybrid_rl.run.logs.records import result_line
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.run.start import build_new_run
@@ -50,24 +50,17 @@ def jobs_of(parsed: Sequence[Override]) -> list[list[str]]:
     """The overrides of each job: every combination of the values."""
     for each in parsed:
         if each.is_interval_sweep():
-            raise UsageError(f"{each.input_line}: a range needs hydra/sweeper=tuned; list values")
+            raise UsageError(f"{each.input_line}: a sweep has no ranges; list values")
         if each.is_sweep_override() and not [*each.sweep_string_iterator()]:
             raise UsageError(f"{each.input_line}: has no values")
     return BasicSweeper.split_arguments([*parsed], None)[0]
 
 
-def labels(jobs: Sequence[Sequence[str]]) -> dict[int, str]:
-    """The overrides of each job that not all jobs share."""
-    common = set.intersection(*map(set, jobs))
-    own = ([text for text in overrides if text not in common] for overrides in jobs)
-    return {number: " ".join(texts) for number, texts in enumerate(own)}
-
-
 class Task:
     """A job of a sweep as Hydra calls it; its errors become its result."""
 
-    def __init__(self, job: Callable[[DictConfig], Any], called: str = "job") -> None:
-        self.job, self.called = job, called
+    def __init__(self, job: Callable[[DictConfig], Any]) -> None:
+        self.job = job
         self.results: dict[int, Result] = {}  # number of a job -> its result
         self.labels: dict[int, str] = {}  # the overrides in which the jobs differ
 
@@ -75,7 +68,7 @@ class Task:
         """Run one job."""
         hydra = HydraConfig.get()
         number = int(hydra.job.num)
-        name = f"{self.called} {number}"
+        name = f"job {number}"
         print(f"{name}: {self.labels[number]}", flush=True)
         result: Result = {"code": 0, "line": "done"}
         self.results[number] = result
@@ -112,7 +105,10 @@ class Sweeper:
 
     def sweep(self, arguments: list[str]) -> Any:
         """Run all jobs; end the process with the highest exit code if one failed."""
-        require_slurm(str(self.config.hydra.runtime.choices["hydra/launcher"]))
+        launcher = self.config.hydra.runtime.choices["hydra/launcher"]
+        if launcher == "submitit_slurm" and not shutil.which("srun"):
+            line = "no srun here; start it where Slurm is, or try hydra/launcher=submitit_local"
+            raise UsageError(f"hydra/launcher={launcher}: {line}")
         parser = OverridesParser.create(config_loader=self.hydra_context.config_loader)
         given = [*(f"{k}={v}" for k, v in self.params.items()), *typed(arguments)]
         jobs = jobs_of(parser.parse_overrides(given))
@@ -142,11 +138,14 @@ class Sweeper:
 
     def _checked(self, jobs: Sequence[Sequence[str]]) -> list[DictConfig]:
         """What the runs of the jobs read, after all checks that need no compilation."""
-        self.task.labels = labels(jobs)
-        configs = []
+        common = set.intersection(*map(set, jobs))
+        own = ([text for text in overrides if text not in common] for overrides in jobs)
+        self.task.labels = {number: " ".join(texts) for number, texts in enumerate(own)}
+        configs, loader = [], self.hydra_context.config_loader
         for number, job in enumerate(jobs):
             with self._naming(number):
-                configs.append(self._composed(job))
+                composed = loader.load_sweep_config(self.config, self._forced(job))
+                configs.append(configuration.read(composed))
         for number, (job, config) in enumerate(zip(jobs, configs, strict=True)):
             with self._naming(number):
                 self._check(job, config.copy())
@@ -159,12 +158,8 @@ class Sweeper:
             yield
         except (UsageError, *UNCOMPOSED) as error:
             line = error if isinstance(error, UsageError) else explain(error)
-            label = f"{self.task.called} {number}: {self.task.labels[number]}"
+            label = f"job {number}: {self.task.labels[number]}"
             raise UsageError(f"{line} ({label.removesuffix(': ')})") from error
-
-    def _composed(self, job: Sequence[str]) -> DictConfig:
-        loader = self.hydra_context.config_loader
-        return configuration.read(loader.load_sweep_config(self.config, self._forced(job)))
 
     def _check(self, job: Sequence[str], config: DictConfig) -> None:
         """Raise UsageError if a job cannot run, alone or with those that share its program.
@@ -220,34 +215,20 @@ def _report(
         run_dir = "".join(str(each.value()) for each in parse(given[:1]))
         result = results.get(number, {"code": None, "line": "not run"})
         if result["code"] != 0 and run_dir:
-            with suppress(OSError):  # it holds something, or is not there
-                Path(run_dir).rmdir()
+            remove_empty(Path(run_dir))
         rows.append({"job": number, "overrides": labels[number], "run_dir": run_dir, **result})
     write_text(folder / "jobs.json", json.dumps(rows, indent=1) + "\n")
     cells = [("job", "overrides", "run folder", "result")]
     for row in rows:
         line = f"failed ({row['code']}): {row['line']}" if row["code"] else row["line"]
         cells.append((str(row["job"]), row["overrides"], row["run_dir"], line))
-    show(cells)
-    failed = [str(row["job"]) for row in rows if row["code"] != 0]
-    which = f"; not {', '.join(failed)}" if failed else ""
-    print(f"{len(rows) - len(failed)} of {len(rows)} jobs done{which}", flush=True)
-
-
-def show(cells: Sequence[Sequence[str]]) -> None:
-    """Print the rows of a table below an empty line, in columns."""
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
     print()
     for row in cells:
-        columns = [f"{text:{width}}" for text, width in zip(row, widths, strict=True)]
-        print("  ".join(columns).rstrip())
-
-
-def require_slurm(launcher: str) -> None:
-    """Raise UsageError for a launcher that needs Slurm's commands where there are none."""
-    if launcher == "submitit_slurm" and not shutil.which("srun"):
-        line = "no srun here; start it where Slurm is, or try hydra/launcher=submitit_local"
-        raise UsageError(f"hydra/launcher={launcher}: {line}")
+        print("  ".join(f"{text:{w}}" for text, w in zip(row, widths, strict=True)).rstrip())
+    failed = [str(row["job"]) for row in rows if row["code"] != 0]
+    which = f"; not {', '.join(failed)}" if failed else ""
+    print(f"{len(rows) - len(failed)} of {len(rows)} jobs done{which}", flush=True)
 
 
 def launch(launcher: Any, jobs: Sequence[list[str]], results: dict[int, Result]) -> None:

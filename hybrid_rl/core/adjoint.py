@@ -53,14 +53,11 @@ def adjoint(
     """
     dJ = jax.grad(objective)(path)
 
-    def costate_step(after: Array, at: tuple[Array, ...]) -> tuple[Array, Array]:
+    def back(after: Array, at: tuple[Array, ...]) -> tuple[Array, tuple[Array, Array]]:
         x, u, j_x, j_u = at
         f_x, f_u = jax.vjp(step, x, u)[1](after)
         g = j_u + f_u
-        return j_x + jax.vjp(policy, x)[1](g)[0] + f_x, g
-
-    def back(after: Array, at: tuple[Array, ...]) -> tuple[Array, tuple[Array, Array]]:
-        rho, g = costate_step(after, at)
+        rho = j_x + jax.vjp(policy, x)[1](g)[0] + f_x
         return rho, (rho, g)
 
     along = (path.x[:-1], path.u, dJ.x[:-1], dJ.u)
@@ -69,7 +66,7 @@ def adjoint(
     costate = jnp.concatenate([costate, dJ.x[-1:]])
     if bound is not None:
         costate = jnp.clip(costate, -bound, bound)
-        gradient = jax.vmap(costate_step)(costate[1:], along)[1]
+        gradient = jax.vmap(back)(costate[1:], along)[1][1]
     return Adjoint(path, costate, gradient)
 
 

@@ -99,12 +99,8 @@ def extended(
     ended = made.terminated > 0.5
     if margin is not None:
         ended |= _far(made.next_obs, start, margin)
-    return Branches(
-        made.next_obs,
-        jnp.where(ended, steps, age + 1),
-        rows,
-        branches.count + 1,
-    )
+    age = jnp.where(ended, steps, age + 1)
+    return Branches(made.next_obs, age, rows, branches.count + 1)
 
 
 def _far(x: Array, real: Array, margin: float) -> Array:

@@ -195,8 +195,10 @@ def theirs(names: list[str], near: Path | None) -> Path:
     ours = PACKAGE.parent if names[0] in CHECKOUT else None
     if not tops or any(top.parent == ours or not _of_user(top.parent) for top in tops):
         raise ValueError(OTHER)
-    if near is not None and any(_together(top, near.resolve()) for top in tops):
-        raise ValueError(f"is code beside what names it; move {near} out of {tops[0]}")
+    if near is not None:
+        file, real = near.resolve(), [top.parent.resolve() / top.name for top in tops]
+        if any(top == file or top in file.parents or file in top.parents for top in real):
+            raise ValueError(f"is code beside what names it; move {near} out of {tops[0]}")
     return below(names)
 
 
@@ -215,12 +217,6 @@ def below(names: list[str]) -> Path:
     if source.suffix != ".py" or not source.is_file():
         raise ValueError(OTHER)
     return source.resolve()
-
-
-def _together(top: Path, near: Path) -> bool:
-    """True if one of the two paths lies in the other."""
-    top = top.parent.resolve() / top.name
-    return top == near or top in near.parents or near in top.parents
 
 
 def _of_user(folder: Path) -> bool:

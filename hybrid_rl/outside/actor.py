@@ -157,7 +157,8 @@ class Actor:
             row = None if obs is None else self._acted(obs, stamp, begin)
             before = stamp
             if row is None:
-                self._safe()
+                self.counts.unsafe += 1
+                self._apply(self.env.safe)
             if (late := time.monotonic() - begin) > self.spec.dt:
                 row, self.counts.missed = None, self.counts.missed + 1
             self._stretch += row is None
@@ -233,11 +234,6 @@ class Actor:
         with suppress(OSError):  # a lost connection: there will be no observation, either
             self._call("apply", lambda: self.robot.apply(self._physical(action)))
         self._past = [(time.monotonic(), action), *self._past[:-1]]
-
-    def _safe(self) -> None:
-        """Apply the safe action."""
-        self.counts.unsafe += 1
-        self._apply(self.env.safe)
 
     def _silent(self, why: str) -> None:
         """End motion, and wait for `alone_s` until the robot answers; the learner shows why."""

@@ -16,7 +16,6 @@ the end of a call.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from time import perf_counter
 from typing import Any
 
 import jax
@@ -53,16 +52,14 @@ class HostLoop(Loop):
 
     def trace(self, state: AgentState) -> list[Any]:
         """The traces of the program that decides, and of the one that ends a decision."""
-        began, at, got = perf_counter(), jnp.zeros(4, jnp.int32), outcome_like(state.env)
+        at, got = jnp.zeros(4, jnp.int32), outcome_like(state.env)
         u = np.zeros((*got.reward.shape, self.agent.spec.act), np.float32)
         self.rows = self.rows_of(jax.eval_shape(jax.vmap(self.step, (0, None)), state, at[0])[1])
         parts = (SEEDS, METRICS, SEEDS, SEEDS, REPLICATED), (SEEDS, METRICS)
-        traced = [
+        return [
             self.shard(each, *parts, donate_argnums=(0, 1)).trace(state, self.rows, u, got, at)
             for each in (self._act, self._close)
         ]
-        self.compile_s += perf_counter() - began
-        return traced
 
     def compile(self, state: AgentState) -> "HostProgram":
         """The program (state, first step, rounds) -> (state, metrics)."""
@@ -74,11 +71,6 @@ class HostLoop(Loop):
         state, led = self._observed(state, u, outcome_like(state.env), 1)
         state, learned = self._learn(state, step)
         return state, {**planned, **learned, **led}
-
-    def copies(self) -> Copies:
-        """The environments [S * E] of training, each with a seed of its own."""
-        seeds = [seed_of(seed, i) for seed in self.seeds for i in range(self.agent.num_envs)]
-        return copies_of(self.agent.episode, seeds)
 
     def restarted(self, state: AgentState, obs: np.ndarray) -> AgentState:
         """`state` [S, ...] at the first observations [S, E, o] of new episodes."""
@@ -159,7 +151,8 @@ class HostProgram:
         loop, envs, first, made = self.loop, self.loop.agent.num_envs, int(start), False
         each = len(loop.seeds), envs
         if self.copies is None:
-            self.copies = loop.copies()
+            seeds = [seed_of(seed, i) for seed in loop.seeds for i in range(envs)]
+            self.copies = copies_of(loop.agent.episode, seeds)
             state = loop.restarted(state, self.copies.reset().reshape(*each, -1))
         rows = jax.tree.map(lambda row: np.zeros(row.shape, row.dtype), loop.rows)
         got = jax.tree.map(np.array, outcome_like(state.env))  # the state itself is donated

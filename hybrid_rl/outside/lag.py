@@ -94,18 +94,9 @@ def followed(
 
 
 def known_lag(env: Robot, folder: Path) -> float | None:
-    """The lag [s] of actions after they were sent: given, or `published_lag`; None: neither."""
+    """The lag [s] of actions after they were sent: given, or published; None: neither."""
     found = handover.latest(folder / "lag", np.float64(0))
     return env.lag if env.lag is not None or found is None else float(found[1])
-
-
-def published_lag(folder: Path, rows: np.ndarray) -> float:
-    """The lag by the rows [N] of random decisions, which `known_lag` gives from now on."""
-    names, lag = ("obs", "next_obs", "sent", "times", "interval"), 0.0
-    if len(rows):
-        lag = estimated(*(rows[name] for name in names))
-    publish(folder, lag)
-    return lag
 
 
 def publish(folder: Path, lag: float) -> None:

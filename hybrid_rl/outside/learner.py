@@ -7,7 +7,6 @@ Row n is decision n of the run. The memory may be ahead of what was learned from
 of the memory. `transition` is where a row becomes one.
 """
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
@@ -40,7 +39,7 @@ class RowLoop(Loop):
 
     def trace(self, state: AgentState) -> list[Any]:
         """The traces of the programs that observe and that learn."""
-        began, zero, no = time.perf_counter(), np.int32(0), np.bool_(False)
+        zero, no = np.int32(0), np.bool_(False)
         made = transition(np.zeros((), row_type(self.agent.spec)))
         learned = jax.vmap(self._learned, (0, 0, None, None))
         self.rows = self.rows_of(jax.eval_shape(learned, state, made, no, zero)[1])
@@ -48,12 +47,10 @@ class RowLoop(Loop):
         observe = self.shard(jax.vmap(self._observed, (0, 0, None)), *parts, donate_argnums=0)
         parts = (SEEDS, METRICS, REPLICATED, SEEDS, REPLICATED, REPLICATED), (SEEDS, METRICS)
         learn = self.shard(self._learn, *parts, donate_argnums=(0, 1))
-        traced = [
+        return [
             observe.trace(state.memory, made, no),
             learn.trace(state, self.rows, zero, made, no, zero),
         ]
-        self.compile_s += time.perf_counter() - began
-        return traced
 
     def halves(self, state: AgentState) -> list[Any]:
         """The compiled programs that observe and that learn.

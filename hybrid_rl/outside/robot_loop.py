@@ -23,7 +23,7 @@ from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import WorldError
 from hybrid_rl.files.atomic import own_folder
 from hybrid_rl.outside import handover
-from hybrid_rl.outside.lag import FOLLOWED, followed, known_lag, publish, published_lag
+from hybrid_rl.outside.lag import FOLLOWED, estimated, followed, known_lag, publish
 from hybrid_rl.outside.learner import RowLearner, RowLoop
 from hybrid_rl.outside.robot_process import RobotProcess
 from hybrid_rl.outside.row_log import RowLog
@@ -34,6 +34,7 @@ RESUMED = "the robot went on, or begins a new episode: its rows so far are read 
 RESUMED += "decisions after them differ from those of a run without the interruption"
 POLL_S = 5e-4  # [s]
 OWN = {"late_s": "late", "age_s": "age", "missed": "missed", "unsafe": "unsafe"}  # of a row
+KNOWN = ("obs", "next_obs", "sent", "times", "interval")  # of rows, from which a lag is estimated
 LATE_S = 10.0  # [s] of the robot's time that a learner is behind when it first says so
 
 
@@ -105,7 +106,9 @@ class RobotProgram:
                 self.loop.cut |= self.process.ended
                 time.sleep(POLL_S)
             if time.monotonic() - self.published > self.env.handover_s:
-                self._publish()
+                newest = learner.params(), learner.learned
+                handover.publish(self.loop.folder / "parameters", *newest)
+                self.published = time.monotonic()
                 self._watch()
         behind = self.log.count() - learner.learned
         self._say(behind)
@@ -128,7 +131,9 @@ class RobotProgram:
         learner, folder, count = self.learner, self.loop.folder, self.loop.agent.random_steps
         if learner.lag is None and learner.read >= count:
             if (lag := known_lag(self.env, folder)) is None:
-                lag = published_lag(folder, np.array([*map(self.log.read, range(count))]))
+                rows = np.array([*map(self.log.read, range(count))])
+                lag = estimated(*(rows[name] for name in KNOWN)) if count else 0.0
+                publish(folder, lag)
             self._learn_by(lag)
         elif learner.lag is not None and self.env.lag is None and self.model is not None:
             if learner.read < max(self.asked, count) + FOLLOWED:
@@ -167,12 +172,6 @@ class RobotProgram:
             if not self.learner.learned:
                 raise
             self.loop.fault, self.loop.cut = error, True
-
-    def _publish(self) -> None:
-        """Hand the newest parameters over."""
-        learner = self.learner
-        handover.publish(self.loop.folder / "parameters", learner.params(), learner.learned)
-        self.published = time.monotonic()
 
     def _say(self, behind: int) -> None:
         """Print that the learner is behind, and again when it is twice as much."""

@@ -83,10 +83,6 @@ class RowLog:
         row = opened(data, self.kind)
         return row if row is not None and row["number"] == number else None
 
-    def close(self) -> None:
-        """Close the file."""
-        os.close(self._file)
-
 
 def sealed(row: np.ndarray) -> bytes:
     """The bytes of a row [], which gets the checksum of the others as its last field."""

@@ -4,7 +4,7 @@ ONNX holds u = squash(W_L a(... a(W_1 (x - mean) / scale + b_1) ...) + b_L) with
 middle + half u where the world's actions have other bounds than -1 and 1.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -92,16 +92,19 @@ def save_onnx(out: Path, task: str, spec: Spec, net: Perceptron) -> None:
         nodes.append(helper.make_node(kind, inputs, [output], **options))
         return output
 
+    arrays = {"mean": net.mean, "scale": net.scale}
+    arrays |= {"low": np.float32(-1), "high": np.float32(1)}
     node("Sub", ["obs", "mean"], "centred")
     x = node("Div", ["centred", "scale"], "scaled")
-    for i in range(1, len(net.weights) + 1):
+    for i, (weights, bias) in enumerate(zip(net.weights, net.biases, strict=True), 1):
+        arrays |= {f"W{i}": weights, f"b{i}": bias}
         x = node("Gemm", [x, f"W{i}", f"b{i}"], f"z{i}")
         function = net.squash if i == len(net.weights) else net.activation
         last = i == len(net.weights)
         x = _function(node, function, x, "action" if last and net.span is None else f"a{i}")
     if net.span is not None:
+        arrays |= dict(zip(("middle", "half"), net.span, strict=True))
         node("Add", [node("Mul", [x, "half"], "swing"), "middle"], "action")
-    arrays = {**dict(_arrays(net)), "low": np.float32(-1), "high": np.float32(1)}
     used = {name for each in nodes for name in each.input}
     kept = [
         onnx.numpy_helper.from_array(np.asarray(value, np.float32), name)
@@ -128,14 +131,3 @@ def _function(node: Any, function: str, z: str, out: str) -> str:
     if function == "clip":
         return node("Clip", [z, "low", "high"], out)
     return node(OPERATORS[function], [z], out)
-
-
-def _arrays(net: Perceptron) -> Iterator[tuple[str, np.ndarray]]:
-    """The arrays of a perceptron by name: mean, scale, W1, b1, ..."""
-    yield "mean", net.mean
-    yield "scale", net.scale
-    for i, (weights, bias) in enumerate(zip(net.weights, net.biases, strict=True), 1):
-        yield f"W{i}", weights
-        yield f"b{i}", bias
-    if net.span is not None:
-        yield from zip(("middle", "half"), net.span, strict=True)

@@ -7,7 +7,6 @@ have, is written once and referenced by a YAML anchor.
 """
 
 import itertools
-import json
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
@@ -46,7 +45,7 @@ def claim_folders(configs: Sequence[DictConfig]) -> Iterator[list[Path]]:
     with ExitStack() as stack:
         for folder in dict.fromkeys([parent, *folders]):
             if given is None or not folder.exists():
-                stack.callback(_remove_empty, folder)
+                stack.callback(remove_empty, folder)
         for folder, config in zip(folders, configs, strict=True):
             if several:
                 with open_dict(config):
@@ -59,8 +58,9 @@ def claim_folders(configs: Sequence[DictConfig]) -> Iterator[list[Path]]:
         yield folders
 
 
-def _remove_empty(folder: Path) -> None:
-    with suppress(OSError):  # it holds something
+def remove_empty(folder: Path) -> None:
+    """Delete a folder, unless it holds something or is not there."""
+    with suppress(OSError):
         folder.rmdir()
 
 
@@ -81,12 +81,6 @@ def new_folder(config: DictConfig, suffix: str = "") -> Path:
 def write(folder: Path, config: DictConfig) -> None:
     """Write config.yaml of a run with the resolved configuration `config`."""
     write_text(folder / "config.yaml", described(config))
-
-
-def write_sweep(folder: Path, values: Sequence[Mapping[str, float]]) -> None:
-    """Write sweep.json of the runs 0, 1, ... in `folder`; values: key -> value, of each."""
-    columns = {key: [own[key] for own in values] for key in values[0]}
-    write_text(folder / SWEEP, json.dumps(columns, indent=1) + "\n")
 
 
 def described(config: DictConfig) -> str:

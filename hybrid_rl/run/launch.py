@@ -3,6 +3,7 @@
 A `Job` has its runs in their folders: settings, records and checkpoints, up to summary.json.
 """
 
+import json
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack
 from dataclasses import dataclass, field
@@ -15,7 +16,7 @@ import jax
 from omegaconf import DictConfig
 
 from hybrid_rl.errors import FAULTS, DivergenceError, UsageError, install
-from hybrid_rl.files.atomic import naming, refuse_link
+from hybrid_rl.files.atomic import naming, refuse_link, write_text
 from hybrid_rl.files.lock import lock
 from hybrid_rl.files.reading import json_file
 from hybrid_rl.networks import precision
@@ -71,11 +72,6 @@ class Output:
             self._asked = True
             self.ask(0)
 
-    def raise_problem(self) -> None:
-        """Raise what the function raised, if it did; the run has ended with a checkpoint."""
-        if self.problem is not None:
-            raise self.problem
-
 
 @dataclass(frozen=True)
 class Job:
@@ -116,7 +112,8 @@ class Job:
         for run, run_dir in zip(self.runs, self.folders, strict=True):
             folder.write(run_dir, run.config)
         if len(self.runs) > 1:
-            folder.write_sweep(self.whole, self.values)
+            columns = {key: [own[key] for own in self.values] for key in self.values[0]}
+            write_text(self.whole / folder.SWEEP, json.dumps(columns, indent=1) + "\n")
 
     def write_summaries(self, session: Session) -> list[dict[str, Any]]:
         """The contents of summary.json of each run, which are written."""
@@ -142,7 +139,7 @@ def _summary(config: DictConfig, session: Session, run_dir: Path, share: slice) 
         "diverged": [end for s, end in ends.items() if share.start <= s < share.stop],
         "before_s": session.began - BEGAN,  # from the command to where wall_s is 0
         "wall_s": session.wall_s,
-        "compile_s": session.loop.compile_s,
+        "compile_s": session.compile_s,
         "env_steps_per_s": None if rate is None else rate / len(session.shelf.logs),
         "physics": configuration.physics(config),
         "device": provenance.device(),
@@ -252,8 +249,13 @@ def _run(job: Job, handled: Handler, output: Output, first: Start | None = None)
     with ExitStack() as stack:
         loop = job.loop()
         shelf = job.shelf(loop, output, stack)
-        progress = stack.enter_context(_progress(run, output.progress))
-        progress.note("\n".join(_notes(job)))
+        rounds = -(-config.total_steps // config.num_envs)  # the last may end beyond total_steps
+        total, label = rounds * config.num_envs, f"{config.task} {config.algo}"
+        shown = Progress(total, label, max(run.agent.changes()), output.progress)
+        progress = stack.enter_context(shown)
+        named = zip(job.folders, job.axis.names, strict=True)
+        lines = [f"{label}{name and ' '}{name}: run folder {run_dir}" for run_dir, name in named]
+        progress.note("\n".join([*lines, fits(job.runs), *run.notes]))
         values: dict[str, Any] = {name: config[name] for name in Schedule.__dataclass_fields__}
         values["eval_modes"] = tuple(m for m in config.eval_modes if m in config.controllers)
         session = Session(loop, run.controllers, Schedule(**values), shelf, progress)
@@ -280,15 +282,6 @@ def _run(job: Job, handled: Handler, output: Output, first: Start | None = None)
             finally:
                 loop.close()
             return joined(job.folders, job.write_summaries(session))
-
-
-def _notes(job: Job) -> list[str]:
-    """Lines about a program that begins."""
-    run, config = job.runs[0], job.runs[0].config
-    named = zip(job.folders, job.axis.names, strict=True)
-    start = f"{config.task} {config.algo}"
-    folders = [f"{start}{name and ' '}{name}: run folder {run_dir}" for run_dir, name in named]
-    return [*folders, fits(job.runs), *run.notes]
 
 
 def _settings(config: DictConfig, run_dir: Path, given: Mapping[str, str]) -> DictConfig:
@@ -336,11 +329,3 @@ def _done(config: DictConfig, run_dir: Path) -> dict[str, Any] | None:
         return None
     newest = run_dir / "checkpoints" / str(summary["total_steps"])
     return summary | {"run_dir": str(run_dir)} if checkpoint.verify(newest) is None else None
-
-
-def _progress(run: Run, visible: bool) -> Progress:
-    """The display of a run, whose last round may end beyond total_steps."""
-    config = run.config
-    rounds = -(-config.total_steps // config.num_envs)
-    label, steady = f"{config.task} {config.algo}", max(run.agent.changes())
-    return Progress(rounds * config.num_envs, label, steady, visible)

@@ -57,7 +57,13 @@ def expand_sweep(config: DictConfig, texts: Sequence[str]) -> list[Member]:
     lists, config = flatten_keys(raw.pop("sweep") or {}), config.copy()
     config.sweep = {}
     for key, values in lists.items():
-        _check_values(raw, key, values)
+        if select(raw, key) is LACKING:
+            raise UsageError(f"sweep.{refusal(key, raw)}")
+        numbers = values if isinstance(values, list) else []
+        finite = all(type(x) in (int, float) and isfinite(x) for x in numbers)
+        if not numbers or not finite or len({*numbers}) < len(numbers):
+            line = "must be a list of different numbers, such as [0.99,0.995]"
+            raise UsageError(f"sweep.{key}={values}: {line}")
     members = []
     for values in product(*lists.values()):
         chosen = dict(zip(lists, values, strict=True))
@@ -67,17 +73,6 @@ def expand_sweep(config: DictConfig, texts: Sequence[str]) -> list[Member]:
             OmegaConf.update(own, source(raw, key), value)
         members.append(Member(configuration.resolve(own, [*texts, *typed]), chosen))
     return members
-
-
-def _check_values(raw: dict[str, Any], key: str, values: Any) -> None:
-    """Raise UsageError for a key that does not exist, or for what is no list of numbers."""
-    if select(raw, key) is LACKING:
-        raise UsageError(f"sweep.{refusal(key, raw)}")
-    numbers = values if isinstance(values, list) else []
-    finite = all(type(x) in (int, float) and isfinite(x) for x in numbers)
-    if not numbers or not finite or len({*numbers}) < len(numbers):
-        line = "must be a list of different numbers, such as [0.99,0.995]"
-        raise UsageError(f"sweep.{key}={values}: {line}")
 
 
 def axis_of(values: Sequence[Mapping[str, float]], runs: Sequence[Run]) -> Axis:

@@ -16,8 +16,7 @@ in every `observe`, as in training. episode.lag=0.05: an action acts 0.05 s afte
 
 import threading
 import time
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Self
 
@@ -229,7 +228,11 @@ class OnlineLearner:
         learner = self._learner
         while learner.read < self.decisions:
             self._advance()
-        with _writable(folder) as path, self._lock:
+        with lock(Path(folder), "folder") as path, self._lock:
+            if (path / "config.yaml").exists():
+                env = run_folder.parse_config(path, "folder").get("env")
+                if (env or {}).get("_target_") != OUTSIDE:
+                    raise UsageError(f"folder={path}: holds a run that train wrote; choose another")
             shelf = Shelf(self._loop, [path / "checkpoints"], [written(self.config)])
             shelf.save(learner.state, {}, Record([[]], [None], step=learner.read))
             run_folder.write(path, self.config)
@@ -260,11 +263,9 @@ class OnlineLearner:
             self._thread.join()
 
     def __enter__(self) -> Self:
-        """Itself; its thread ends with the block."""
         return self
 
     def __exit__(self, *_: object) -> None:
-        """End the thread."""
         self.close()
 
     def _check(self) -> None:
@@ -272,17 +273,6 @@ class OnlineLearner:
             raise self._error
         if self._closed:
             raise UsageError("this learner is closed")
-
-
-@contextmanager
-def _writable(folder: Path | str) -> Iterator[Path]:
-    """The folder, locked, unless it holds a run that `OnlineLearner.save` has not written."""
-    with lock(Path(folder), "folder") as path:
-        if (path / "config.yaml").exists():
-            env = run_folder.parse_config(path, "folder").get("env")
-            if (env or {}).get("_target_") != OUTSIDE:
-                raise UsageError(f"folder={path}: holds a run that train wrote; choose another")
-        yield path
 
 
 def _config(method: Any, sizes: dict[str, Any], seed: int, config_dir: Any) -> DictConfig:

@@ -130,14 +130,12 @@ def _description(folder: Path, trained: Trained, command: str, seed: int) -> dic
     model = trained.learner(mode="policy")[1].model
     if not is_identity(controller.model, model, trained.episode.spec.obs):
         return None
-    named = {name: config.get(name) for name in ("env", *configuration.PAID)}
+    named = [name for name in ("env", *configuration.PAID) if config.get(name) is not None]
     parts: Any = {
         "episode": OmegaConf.to_container(config.episode),
         "policy": OmegaConf.to_container(config.controllers.policy.policy),
     }
-    for name, node in named.items():
-        if node is not None:
-            parts[name] = _anywhere(OmegaConf.to_container(node))
+    parts |= {name: _anywhere(OmegaConf.to_container(config[name])) for name in named}
     file = folder / "summary.json"
     summary = json_file(file) if file.exists() else {}
     return {

@@ -177,7 +177,10 @@ def read(name: str) -> Trained:
     prefix, known = f"policy={name}:", f"choose a file, or one of {', '.join(names())}"
     try:
         arrays = archive.read(prefix, file, hint=known)
-        about = _described(str(arrays.get(archive.ABOUT, "{}")), archive.find(file))
+        about = json.loads(str(arrays.get(archive.ABOUT, "{}")))
+        if lacking := [key for key in DESCRIBED if key not in about]:
+            raise ValueError(f"its description lacks {', '.join(lacking)}")
+        parts.check({**about, "command": ""}, archive.find(file))  # the command is only shown
         prepare(configuration.load([]))
         return _trained(prefix, str(file), str(arrays["task"]), about)
     except (ValueError, *UNFIT) as error:
@@ -198,6 +201,10 @@ def _trained(prefix: str, file: str, task: str, about: dict[str, Any]) -> Traine
     params = Params(policy=trained.load(), **_models(prefix, file, task, env, about))
     kept = {name: about[name] for name in (*ACTING, *configuration.PAID) if name in about}
     kept |= {"task": task, "num_seeds": 1, "num_envs": 1, "env": about["env"]}
+    notes = [f"trained by: {printable(about['command'])}"] if about.get("command") else []
+    if evaluation := about.get("evaluation"):
+        count = len(evaluation["returns"])
+        notes.append(f"evaluated then: {evaluation['mean']:,.1f} (mean of {count} episodes)")
     return Trained(
         task,
         Episode(env, **about["episode"], **paid),
@@ -205,7 +212,7 @@ def _trained(prefix: str, file: str, task: str, about: dict[str, Any]) -> Traine
         jax.tree.map(lambda leaf: leaf[None], params),
         (about["seed"],),
         about["step"],
-        tuple(_origin(about)),
+        tuple(notes),
         OmegaConf.create(kept),
     )
 
@@ -224,21 +231,3 @@ def _models(prefix: str, file: str, task: str, env: Any, about: dict[str, Any]) 
             shapes = jax.eval_shape(partial(made[name].init, key, spec))
             found[name] = archive.policy(file, shapes, task, env, about["episode"], name)
     return {"reward": found.pop("reward_model"), **found}
-
-
-def _described(text: str, file: Path) -> dict[str, Any]:
-    """`about` of a file, whose names are judged."""
-    about = json.loads(text)
-    if lacking := [key for key in DESCRIBED if key not in about]:
-        raise ValueError(f"its description lacks {', '.join(lacking)}")
-    parts.check({**about, "command": ""}, file)  # which is only shown
-    return about
-
-
-def _origin(about: Mapping[str, Any]) -> list[str]:
-    """Lines about how a policy was made."""
-    lines = [f"trained by: {printable(about['command'])}"] if about.get("command") else []
-    if evaluation := about.get("evaluation"):
-        count = len(evaluation["returns"])
-        lines.append(f"evaluated then: {evaluation['mean']:,.1f} (mean of {count} episodes)")
-    return lines

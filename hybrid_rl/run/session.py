@@ -47,6 +47,7 @@ class Session:
     recent: Speed = field(default_factory=Speed)  # since then
     pace: Pace = field(default_factory=Pace)
     program: Any = None  # compiled
+    compile_s: float = 0.0  # [s] that compiling took
     evaluations: Evaluations | None = None  # compiled
 
     def __post_init__(self) -> None:
@@ -103,14 +104,14 @@ class Session:
         with self.progress.doing("compiling"):
             import orbax.checkpoint  # noqa: F401  # 1 s, too long for a checkpoint at a signal
 
+            began = perf_counter()
             self.program = self.loop.compile(self.state)
             memory.check(self.loop, self.program)
-            began = perf_counter()
             modes = {mode: self.controllers[mode] for mode in self.schedule.eval_modes}
             params = self.loop.params(self.state)
             self.evaluations = Evaluations(self.loop, modes, self.schedule.eval_episodes, params)
-            self.loop.compile_s += perf_counter() - began
-        self.progress.note(f"compiled in {self.loop.compile_s:.1f} s")
+            self.compile_s = perf_counter() - began
+        self.progress.note(f"compiled in {self.compile_s:.1f} s")
 
     def ask(self, number: int) -> None:
         """End the run after the current call, with a checkpoint; number: of the signal, or 0."""
@@ -169,15 +170,16 @@ class Session:
         for row in episodes:
             pair = (row["step"], float(row["train/return"]))
             self.record.returns[row["learner"]].append(pair)
-        self._write(sorted(episodes + ended, key=lambda row: (row["step"], row["learner"])))
+        rows = sorted(episodes + ended, key=lambda row: (row["step"], row["learner"]))
+        self.shelf.write(rows, self.wall_s)
         self._continue(bool(infinite))
         self.gathered = records.appended(self.gathered, metrics)
         if self.schedule.row_due(self.step, worlds):
             learners = len(self.loop.seeds)
             means = records.means(self.gathered, learners, self.step, self.record.ends)
             self.gathered = {}
-            perf = {"perf/compile_s": self.loop.compile_s} | self._speed(len(self.shelf.logs))
-            self._write([row | perf for row in means])
+            perf = {"perf/compile_s": self.compile_s} | self._speed(len(self.shelf.logs))
+            self.shelf.write([row | perf for row in means], self.wall_s)
 
     def _speed(self, folders: int = 1) -> dict[str, float]:
         """Decisions of all learners per second since the last row; empty before they learn.
@@ -205,7 +207,7 @@ class Session:
         ended = self._end(infinite)
         left = {s: o for s, o in enumerate(outcomes) if s not in self.record.ends}
         rows_left = [{"step": self.step, "learner": s} | each for s, each in left.items()]
-        self._write(sorted(rows_left + ended, key=lambda row: row["learner"]))
+        self.shelf.write(sorted(rows_left + ended, key=lambda row: row["learner"]), self.wall_s)
         self._continue(bool(ended))
         result = next(key for key in RETURNS if key in outcomes[0])
         for s, outcome in left.items():
@@ -242,15 +244,12 @@ class Session:
 
     def _save(self) -> None:
         """Write a checkpoint."""
-        self._write(self._end(unsound(self.state.learners, self.step)))
+        self.shelf.write(self._end(unsound(self.state.learners, self.step)), self.wall_s)
         self._continue(True)
         now = replace(self.record, wall_s=self.wall_s)
         with self.progress.doing("saving"):
             self.shelf.save(self.state, self.gathered, now)
         self.saved = self.step, self.record.unevaluated
-
-    def _write(self, new: list[Row]) -> None:
-        self.shelf.write(new, self.wall_s)
 
     def _show(self, scalars: Mapping[str, float], say: bool | None) -> None:
         newest = [

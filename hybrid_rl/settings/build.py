@@ -1,7 +1,7 @@
 """From overrides to parts: compose conf/, check it, build a run."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,13 +21,7 @@ from hybrid_rl.fields import FieldError
 from hybrid_rl.files.targets import build as build_part
 from hybrid_rl.protocols import Controller
 from hybrid_rl.settings.complete import LACKING, complete, refusal, select
-from hybrid_rl.settings.compose import (
-    UNCOMPOSED,
-    complete_names,
-    explain,
-    keys_of,
-    settings_keys,
-)
+from hybrid_rl.settings.compose import UNCOMPOSED, complete_names, explain, keys_of, settings_keys
 from hybrid_rl.settings.groups import CONF, groups, register, search_path
 from hybrid_rl.settings.values import (
     COUNTS,
@@ -138,7 +132,10 @@ def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
 
     config: as `compose_raw` gives it.
     """
-    values: dict[str, Any] = resolved(config)
+    try:
+        values: dict[str, Any] = plain(config, resolve=True)
+    except OmegaConfBaseException as error:
+        raise UsageError(explain(error)) from error
     values.pop("sweep", None)
     words = (text for text in overrides if not re.match(r"\+*(sweep|hydra)\.|-", text))
     values["recipe"] = [re.sub(r"\$\{([^}]*)\}", r"$(\1)", text) for text in words]  # no references
@@ -147,14 +144,6 @@ def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
         names = (values["env"].get(key) for key in ("make", "id", "name"))
         values["task"] = re.sub(r"[^A-Za-z0-9_.-]", "_", str(next(filter(None, names), "_")))
     return OmegaConf.create(values, flags={"struct": True})
-
-
-def resolved(config: DictConfig) -> Any:
-    """The values of a composed configuration as dicts and lists."""
-    try:
-        return plain(config, resolve=True)
-    except OmegaConfBaseException as error:
-        raise UsageError(explain(error)) from error
 
 
 def build(config: DictConfig) -> Run:
@@ -246,27 +235,24 @@ def _on_this_machine(config: DictConfig) -> DictConfig:
     """
     sections = [key for key in (*SECTIONS, *PAID, "imagine") if key in config]
     parts = OmegaConf.masked_copy(config, sections)
-    chosen = physics(config)
+    chosen, observe = physics(config), config.episode.get("observe")
 
-    def visit(node: Any) -> None:
+    def replace(node: Any, new: Callable[[Any, Any], Any]) -> None:
+        """Put new(key, value), unless it is None, in place of every value at or below a node."""
         for key, value in node.items() if isinstance(node, DictConfig) else enumerate(node):
-            if key == "physics" and value == config.env.physics:
-                node[key] = chosen
+            if (made := new(key, value)) is not None:
+                node[key] = made
             elif isinstance(value, (DictConfig, ListConfig)):
-                visit(value)
-
-    def see(node: Any) -> None:
-        for key, value in node.items() if isinstance(node, DictConfig) else enumerate(node):
-            if value == parts.env and key != "env":  # that of an Episode, which observes by itself
-                node[key] = {"_target_": SENSED, "env": value, "observe": config.episode.observe}
-            elif isinstance(value, (DictConfig, ListConfig)):
-                see(value)
+                replace(value, new)
 
     if chosen is not None:
-        visit(parts)
-    if config.episode.get("observe") is not None:
-        for name in ("controllers", "learners", "imagine"):
-            see(parts.get(name) or {})
+        own = config.env.physics
+        replace(parts, lambda key, value: chosen if key == "physics" and value == own else None)
+    if observe is not None:
+        seen = {"_target_": SENSED, "env": parts.env, "observe": observe}
+        for name in ("controllers", "learners", "imagine"):  # an Episode observes by itself
+            node = parts.get(name) or {}
+            replace(node, lambda key, value: seen if key != "env" and value == parts.env else None)
     return parts
 
 
@@ -288,7 +274,10 @@ def _usage(config: DictConfig, who: str | None = None) -> Iterator[None]:
         raise
     except FieldError as error:
         part, _, field = error.path.rpartition(".")
-        error.path = f"{_shortest(config, part)}.{field}" if part else field
+        node: Any = OmegaConf.select(config, part) if part else None
+        if isinstance(node, DictConfig):  # policy_learner for learners.policy
+            short = next((name for name, other in config.items() if other == node), part)
+            error.path = f"{short}.{field}"
         if not (field == "world" and error.lacks):
             raise UsageError(error.line) from error
         who = part if part in PAID else who or config.get("algo") or "this"
@@ -296,10 +285,3 @@ def _usage(config: DictConfig, who: str | None = None) -> Iterator[None]:
         raise UsageError(line) from error
     except ValueError as error:
         raise UsageError(str(error)) from error
-
-
-def _shortest(config: DictConfig, where: str) -> str:
-    """The key of a part by its name: policy_learner for learners.policy."""
-    part: Any = OmegaConf.select(config, where)
-    same = [name for name, node in config.items() if node == part and isinstance(part, DictConfig)]
-    return str(same[0]) if same else where

@@ -1,6 +1,5 @@
 """Around Hydra's composition (build.py): its errors in one line, a task or method of the user's."""
 
-import difflib
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,7 +12,7 @@ from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl.errors import UsageError, install, relative
 from hybrid_rl.settings import words as overrides
-from hybrid_rl.settings.complete import keys
+from hybrid_rl.settings.complete import keys, nearest
 from hybrid_rl.settings.groups import CONF, THESIS, options
 from hybrid_rl.settings.values import COUNTS
 
@@ -72,8 +71,8 @@ def _unknown(file: str, found: Sequence[str]) -> str:
     known = sorted({*options(group), *found})
     many = len(known) >= MANY
     some = f"the {len(known)} in `python -m hybrid_rl.list`" if many else ", ".join(known)
-    close = difflib.get_close_matches(value.lower(), known, n=1)
-    hint = f"did you mean {close[0]}?" if close else ""
+    near = nearest(value.lower(), known)
+    hint = f"did you mean {near}?" if near else ""
     if group == "task" and (kind := OF_GYMNASIUM.search(value)):
         hint = f"did you mean task=gymnasium env.{kind.lastgroup}={value}?"
     if group == "hydra/launcher":

@@ -19,8 +19,7 @@ ROLES = {  # group of conf/ -> folder of hybrid_rl
     **{"features": "features", "map": "beliefs/maps", "policy": "policies"},
 }
 PART = re.compile(r"^@(?:part|dataclass\(frozen=True\))\nclass (\w+)", re.MULTILINE)
-HERE = Path(__file__).parents[1]
-CONF = next(p for p in (HERE / "conf", HERE.parent / "conf") if (p / "train.yaml").exists())
+CONF = next(p for p in (PACKAGE / "conf", PACKAGE.parent / "conf") if (p / "train.yaml").exists())
 THESIS = CONF.parent / "thesis" / "conf"  # methods by the thesis' names, on the search path
 MODES = ("full", "policy", "planner")  # keys of `controllers`: who acts
 

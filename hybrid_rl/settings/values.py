@@ -40,7 +40,13 @@ def check_words(config: DictConfig) -> None:
 
 def check(config: DictConfig) -> None:
     """Raise UsageError for a value that no run accepts; parts check their own ranges."""
-    _check_groups(config)
+    for key in SECTIONS:
+        if not isinstance(config.get(key), DictConfig):
+            hint = f"; did you mean task={config.get(key)}?" if key == "env" else ""
+            raise UsageError(f"{key}={as_yaml(config.get(key))}: must be a group of keys{hint}")
+    if "_target_" not in config.env:
+        line = "must be a part, a group of keys with _target_"
+        raise UsageError(f"env={as_yaml(config.env)}: {line}")
     values = OmegaConf.to_container(config)
     parts.check(values)
     check_words(config)
@@ -57,17 +63,6 @@ def check(config: DictConfig) -> None:
         one_of("eval_modes", mode, MODES)
     for key, known in (("precision", PRECISIONS), ("physics", IMPLEMENTATIONS)):
         one_of(key, config[key], known)
-
-
-def _check_groups(config: DictConfig) -> None:
-    """Raise UsageError for a section that is no group of keys, or a world without a class."""
-    for key in SECTIONS:
-        if not isinstance(config.get(key), DictConfig):
-            hint = f"; did you mean task={config.get(key)}?" if key == "env" else ""
-            raise UsageError(f"{key}={as_yaml(config.get(key))}: must be a group of keys{hint}")
-    if "_target_" not in config.env:
-        line = "must be a part, a group of keys with _target_"
-        raise UsageError(f"env={as_yaml(config.env)}: {line}")
 
 
 def time_limit(env: External | Robot, given: Mapping[str, Any]) -> dict[str, int]:

@@ -133,7 +133,7 @@ class Agent:
         env = jax.vmap(self.episode.reset)(jax.random.split(resetting, self.num_envs))
         memory = self.replay.init(self.spec, self.num_envs, self.episode.own_goal)
         learners = {
-            name: self._first(learner, k)
+            name: learner.init(k, lifted_spec(self._lifting(learner), self.seen))
             for (name, learner), k in zip(self.learners.items(), learning, strict=True)
         }
         state = AgentState(env, self.first_control(), memory, learners, run)
@@ -178,10 +178,6 @@ class Agent:
         owners: list[Any] = [each for each in self.learners.values() if "model" in each.owns]
         observes = not owners or owners[0] is learner or learner.data == "latest"
         return None if observes else owners[0].model
-
-    def _first(self, learner: Learner, key: Array) -> Any:
-        """The initial state of a learner. The key is consumed."""
-        return learner.init(key, lifted_spec(self._lifting(learner), self.seen))
 
     def step(self, state: AgentState, step: Array) -> tuple[AgentState, dict[str, Array]]:
         """One decision in every environment, `step` [] decisions into the run; metrics name -> [].

@@ -129,7 +129,14 @@ def _contracts(whole: Any, spec: Spec) -> Iterator[Contract]:
 
 def check_parameters(whole: Any, learned: Mapping[str, Any], spec: Spec) -> None:
     """Raise ValueError for a policy, model or the like that no learner trains, or another form."""
-    for owner, name, part in _with_parameters(whole):
+    inside: set[int] = set()  # parts with a field of Params for themselves, and what is in them
+    for owner, name, _, part in parts(whole):
+        held = id(owner) in inside or isinstance(owner, SavedPolicy)
+        own = name in LEARNED and callable(getattr(part, "init", None))
+        if held or own:
+            inside.add(id(part))
+        if held or not own:
+            continue
         needs = leaves(jax.eval_shape(lambda key, of=part: of.init(key, spec), jax.random.key(0)))
         has = leaves(learned.get(name))
         uses = "learns with" if callable(getattr(owner, "update", None)) else "acts by"
@@ -143,14 +150,3 @@ def check_parameters(whole: Any, learned: Mapping[str, Any], spec: Spec) -> None
             if needs[at] != has.get(at):
                 differ = f"{needs[at]} in it and {has.get(at)} in the learner's"
                 raise ValueError(f"{line}, but {at} is {differ}; give both the same {name}")
-
-
-def _with_parameters(whole: Any) -> Iterator[tuple[Any, str, Any]]:
-    """(owner, field, part) of what has a field of Params for itself; nothing in such a part."""
-    inside: set[int] = set()
-    for owner, name, _, part in parts(whole):
-        if id(owner) in inside or isinstance(owner, SavedPolicy):
-            inside.add(id(part))
-        elif name in LEARNED and callable(getattr(part, "init", None)):
-            inside.add(id(part))
-            yield owner, name, part

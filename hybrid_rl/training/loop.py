@@ -16,7 +16,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field, fields, is_dataclass
 from functools import partial
-from time import perf_counter
 from typing import Any, ClassVar
 
 import jax
@@ -129,7 +128,6 @@ class Loop:
     agent: Agent
     seeds: tuple[int, ...]  # [S] of all learners, K times the same with an axis
     stride: int
-    compile_s: float = 0.0  # [s] spent compiling so far
     axis: Axis = field(default_factory=Axis)  # numbers of "agent"
     fault: Exception | None = field(default=None, init=False)  # that ends the run, once it is saved
     notes: ClassVar[tuple[str, ...]] = ()  # on a run that is resumed; none: it goes on bit for bit
@@ -217,13 +215,10 @@ class Loop:
 
     def trace(self, state: AgentState) -> Any:
         """The trace of the program."""
-        began = perf_counter()
         parts = (SEEDS, REPLICATED, REPLICATED), (SEEDS, METRICS)
         program = self.shard(self._advance, *parts, donate_argnums=0)
         zero = jnp.zeros((), jnp.int32)
-        traced = program.trace(state, zero, zero)
-        self.compile_s += perf_counter() - began
-        return traced
+        return program.trace(state, zero, zero)
 
     def compile(self, state: AgentState) -> Any:
         """The compiled program (state, first step, rounds) -> (state, metrics)."""
@@ -231,10 +226,7 @@ class Loop:
 
     def compile_trace(self, traced: Any) -> Any:
         """The compiled program of a trace."""
-        began = perf_counter()
-        compiled = compile_lowered(traced.lower())
-        self.compile_s += perf_counter() - began
-        return compiled
+        return compile_lowered(traced.lower())
 
     def memory(self, program: Any) -> float:
         """Memory [bytes] per device of the compiled `program` and its state; 0 if unknown."""

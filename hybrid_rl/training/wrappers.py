@@ -26,8 +26,6 @@ from hybrid_rl.protocols import Constraint, Env, Goal
 from hybrid_rl.types import Clock, EnvState, PyTree, Sent, Spec
 
 VIOLATED = "violation"  # in `metrics`: 1 where the decision violates the constraint, else 0
-
-
 SLIGHT = 0.1  # [decisions] later than a whole number of them that an action may act
 
 

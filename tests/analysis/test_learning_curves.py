@@ -2,10 +2,8 @@
 
 import csv
 import itertools
-import json
 from dataclasses import replace
 
-import imageio.v3 as iio
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -125,16 +123,6 @@ def test_a_line_is_thin_where_seeds_are_missing():
     np.testing.assert_array_equal(np.isfinite(thick.get_ydata()), [True] * 3 + [False] * 2)
     np.testing.assert_array_equal(np.isfinite(thin.get_ydata()), [False] * 2 + [True] * 3)
     assert thin.get_linewidth() < thick.get_linewidth()
-
-
-def test_the_picture_is_drawn_and_its_numbers_are_float32(tmp_path):
-    drawn, out = [curve(seeds=5)], tmp_path / "new" / "a.png"
-    save(plot(drawn), numbers_of(drawn), out)
-    (one,) = json.loads(out.with_suffix(".json").read_text())["curves"]
-    assert (one["task"], one["label"], one["seeds"]) == ("hopper", "sac", [0, 1, 2, 3, 4])
-    assert one["iqm"] == drawn[0].iqm.astype("float32").tolist()
-    blue = np.abs(iio.imread(out)[..., :3].astype(int) - [0x00, 0x72, 0xB2]).max(-1) < 8
-    assert blue.sum() > 1000  # the line was drawn
 
 
 def test_a_picture_is_redrawn_from_its_numbers(tmp_path):

@@ -13,7 +13,6 @@ from counting import LINE, Counting, broken, lost, moved, of
 
 from hybrid_rl.errors import UsageError
 from hybrid_rl.files.atomic import own_folder
-from hybrid_rl.outside import lag as lags
 from hybrid_rl.outside import robot_loop
 from hybrid_rl.outside.lag import acted, known_lag
 from hybrid_rl.outside.learner import transition
@@ -96,8 +95,7 @@ def test_one_robot_has_one_learner(word):
 
 def test_the_lag_is_estimated_from_the_random_decisions(agent, tmp_path, monkeypatch):
     """Then the memory holds what acted, from its first row on, and the robot's process knows it."""
-    monkeypatch.setattr(lags, "ENOUGH", 10)
-    monkeypatch.setattr(lags, "estimated", lambda *given: 0.005)
+    monkeypatch.setattr(robot_loop, "estimated", lambda *given: 0.005)
     monkeypatch.setattr(RobotProcess, "watch", lambda self: None)
     loop = loop_of(replace(of(agent, Counting), random_steps=15), (0,), 20, tmp_path)
     _, rows = moved(agent, own_folder(loop.folder), Counting)
@@ -111,14 +109,14 @@ def test_the_lag_is_estimated_from_the_random_decisions(agent, tmp_path, monkeyp
         each = [transition(row, lag).action[0, 0] for row in rows[:read]]
         np.testing.assert_allclose(kept, each, atol=1e-6)
     assert read >= 15
-    assert lags.known_lag(loop.agent.episode.env, loop.folder) == 0.005
+    assert known_lag(loop.agent.episode.env, loop.folder) == 0.005
     robot_lag = metrics["robot/lag"][-1, 0]
     assert robot_lag == pytest.approx((0.005 + rows[19]["age"]) / Counting.dt, rel=1e-4)
     monkeypatch.setattr(robot_loop, "FOLLOWED", 4)
     monkeypatch.setattr(robot_loop, "followed", lambda *given: 0.009)
     program.model = SimpleNamespace(lift=lambda params, obs: obs, step=lambda params, x, u: x)
     state, _ = program(state, jnp.int32(20), jnp.int32(5))
-    assert lags.known_lag(loop.agent.episode.env, loop.folder) == 0.009
+    assert known_lag(loop.agent.episode.env, loop.folder) == 0.009
     read = int(state.memory.count[0])
     kept = np.asarray(state.memory.rows)[0, :read, 0, 4:5]
     each = [transition(row, 0.009).action[0, 0] for row in rows[:read]]

@@ -68,7 +68,10 @@ def save(folder: Path, step: int, state: PyTree, meta: dict, keep: int = KEEP) -
     draft = _hidden(folder, str(step))
     try:
         own_folder(folder)  # not its parents: a run folder that is gone stays gone
-        _recover(folder)
+        for number, path in _finished(folder).items():
+            if path.name != str(number):  # replaced, and a kill left no newer one
+                _rename(path, folder / str(number))
+        _sweep(folder)
         draft.mkdir()
         for name, text in texts.items():
             (draft / name).write_text(text + "\n", encoding="utf-8")
@@ -135,14 +138,6 @@ def _attempt(path: Path, like: PyTree) -> tuple[tuple[PyTree, dict] | None, str]
         raise
     except (OSError, ValueError) as problem:  # TensorStore raises ValueError
         return None, " ".join(str(problem).split())
-
-
-def _recover(folder: Path) -> None:
-    """Rename a replaced checkpoint back if a kill left no newer one; delete old drafts."""
-    for step, path in _finished(folder).items():
-        if path.name != str(step):
-            _rename(path, folder / str(step))
-    _sweep(folder)
 
 
 def _sweep(folder: Path) -> None:

@@ -107,17 +107,12 @@ def read(path: Path, like: PyTree) -> tuple[PyTree, dict]:
         arrays = reader.restore(plain / "state", args) if filled else {}
     state = []
     for name, leaf in wanted.items():
-        array = jax.numpy.array(arrays.pop(name) if name in arrays else np.zeros(**_empty(leaf)))
-        kind = kinds[name]["key"]
-        state.append(jax.random.wrap_key_data(array, impl=kind) if kind else array)
+        if name in arrays:
+            array, kind = jax.numpy.array(arrays.pop(name)), kinds[name]["key"]
+            state.append(jax.random.wrap_key_data(array, impl=kind) if kind else array)
+        else:
+            state.append(jax.numpy.zeros(leaf.shape, leaf.dtype))  # without elements
     return jax.tree.unflatten(jax.tree.structure(like), state), meta
-
-
-def _empty(leaf: jax.Array) -> dict:
-    """Shape and dtype of an array without elements, of keys as of numbers."""
-    key = jax.numpy.issubdtype(leaf.dtype, jax.dtypes.prng_key)
-    data = jax.eval_shape(jax.random.key_data, leaf) if key else leaf
-    return {"shape": data.shape, "dtype": data.dtype}
 
 
 def _match(path: Path, kinds: dict[str, dict], wanted: dict) -> None:

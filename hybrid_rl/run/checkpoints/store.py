@@ -9,6 +9,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from hybrid_rl.core.batching import join
 from hybrid_rl.errors import MisfitError
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.logs.log import RunLog
@@ -60,8 +61,7 @@ def read_part(
 
 def concatenated(states: Sequence[Any]) -> Any:
     """The trees [S, ...] of the learners of several runs as one."""
-    first, *others = states
-    return jax.tree.map(lambda *each: jnp.concatenate(each), *states) if others else first
+    return join(*states) if len(states) > 1 else states[0]
 
 
 def each_learner(change: Callable[[Any], Any], memory: Any) -> Any:
@@ -94,9 +94,8 @@ class Shelf:
     def write(self, new: Sequence[Row], wall_s: float) -> None:
         """Append rows {"step", "learner", name: number or word, ...}, with the wall time [s]."""
         for log, share in zip(self.logs, self.shares(), strict=True):
-            rows = [row.copy() for row in new if share.start <= row["learner"] < share.stop]
-            seeds = [self.loop.seeds[row.pop("learner")] for row in rows]
-            for row, seed in zip(rows, seeds, strict=True):
+            for row in (row.copy() for row in new if share.start <= row["learner"] < share.stop):
+                seed = self.loop.seeds[row.pop("learner")]
                 log.write([{"step": row.pop("step"), "seed": seed} | row | {"wall_s": wall_s}])
 
     def save(self, state: Any, gathered: Metrics, record: Record) -> None:

@@ -62,7 +62,8 @@ class RunLog:
             from hybrid_rl.run.logs import loggers  # TensorBoard takes 0.2 s
 
             self._check()
-            self._loggers = loggers.opened(self._begun)
+            more = [loggers.WandB] if self._begun.config.get("logger") == "wandb" else []
+            self._loggers = [kind(self._begun) for kind in (loggers.TensorBoard, *more)]
 
     def _check(self) -> None:
         """Raise CheckpointError if metrics.jsonl is no longer the file that is open here."""
@@ -98,11 +99,10 @@ class RunLog:
             return []
         return [f"{self.path} has changed: rows before step {step} are missing"]
 
-    def summary(self, fields: dict[str, Any]) -> Path:
+    def summary(self, fields: dict[str, Any]) -> None:
         """Replace summary.json; NaN and infinity become null."""
-        path = self.run_dir / "summary.json"
-        write_text(path, json.dumps(json_value(fields), indent=2, allow_nan=False) + "\n")
-        return path
+        text = json.dumps(json_value(fields), indent=2, allow_nan=False)
+        write_text(self.run_dir / "summary.json", f"{text}\n")
 
 
 def number(value: Any) -> int | float | None:

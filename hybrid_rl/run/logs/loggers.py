@@ -22,12 +22,6 @@ from hybrid_rl.files.atomic import open_own, own_folder
 from hybrid_rl.run.logs.records import COORDINATES, Begun, Row
 
 
-def opened(run: Begun) -> list[Any]:
-    """The loggers of a run."""
-    kinds = (TensorBoard, WandB) if run.config.get("logger") == "wandb" else (TensorBoard,)
-    return [kind(run) for kind in kinds]
-
-
 def scalars(row: Row) -> dict[str, float]:
     """The finite numbers of a row."""
     named = {name: value for name, value in row.items() if name not in COORDINATES}

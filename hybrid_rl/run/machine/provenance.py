@@ -4,6 +4,7 @@ import os
 import platform
 import subprocess
 from collections.abc import Iterable
+from contextlib import suppress
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -44,17 +45,11 @@ def device() -> str:
     """The device of JAX: "gpu: NVIDIA H100" or "cpu: AMD EPYC 7B13, 8 threads"."""
     devices = jax.devices()
     first = devices[0]
-    if first.platform == "cpu":
-        return f"cpu: {_processor()}, {os.cpu_count()} threads"
-    several = f"{len(devices)} x " if len(devices) > 1 else ""
-    return f"{first.platform}: {several}{first.device_kind}"
-
-
-def _processor() -> str:
-    """The processor's name, as its maker writes it."""
-    try:
+    if first.platform != "cpu":
+        several = f"{len(devices)} x " if len(devices) > 1 else ""
+        return f"{first.platform}: {several}{first.device_kind}"
+    lines: list[str] = []
+    with suppress(OSError):
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-    except OSError:
-        lines = []
     names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
-    return names[0] if names else platform.machine()
+    return f"cpu: {names[0] if names else platform.machine()}, {os.cpu_count()} threads"

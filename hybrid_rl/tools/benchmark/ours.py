@@ -33,7 +33,8 @@ def loop(
     """
     made = Loop(agent, tuple(range(learners)), decisions)
     state = made.init()
-    program = made.compile(state)
+    began = perf_counter()
+    program, compile_s = made.compile(state), perf_counter() - began
     held = [state]
     start = jnp.int32(LEARNING)
 
@@ -49,7 +50,7 @@ def loop(
         decisions = min(max(round(seconds / each), 1), decisions)
     memory = made.memory(program) * made.mesh.size / learners
     contestant = Contestant(name, lambda: advance(decisions), learners * decisions, memory)
-    return contestant, made.compile_s
+    return contestant, compile_s
 
 
 def shares(agent: Agent, learners: int, seconds: float) -> tuple[list[Contestant], dict[str, int]]:
