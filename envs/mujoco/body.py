@@ -47,8 +47,8 @@ class Body(ABC):
 
     @property
     def _asset(self) -> str:
-        """The model, whose first m actuators are the motors; the library's robots have one."""
-        raise NotImplementedError
+        """The model, whose first m actuators are the motors; for a body without its own `_body`."""
+        return ""
 
     @property
     def _body(self) -> Physics:

@@ -1,6 +1,7 @@
 """Actor-critic learning: the fields that its learners share, and the steps of an update.
 
     y    = returns along paths of decisions, recorded or imagined (`core.returns`)
+    |y| <= (largest + alpha m) / (1 - discount),     largest: absolute reward so far, or infinity
     L_Q  = 0.5 sum_i mean w (Q_i(x, u) - y)^2
     L_pi = -mean V_0
     L_a  = -log(alpha) mean (log pi(v|x) + target),        v ~ pi(x)
@@ -176,19 +177,20 @@ class SoftActorCritic(ActorCritic):
         )
 
     def evaluated(
-        self, state: Any, paths: Imagined, steps: int, params: Params, paid: Array | float = jnp.inf
+        self,
+        state: ActorCriticState,
+        paths: Imagined,
+        steps: int,
+        params: Params,
+        largest: Array | float = jnp.inf,
     ) -> tuple[ActorCriticState, dict[str, Array]]:
-        """`state` after a step of the critic to the returns y of the first `steps` decisions.
-
-        paid: [] at most in a decision; |y| is limited to this, and the aimed entropy, for ever.
-        """
+        """`state` after a step of the critic to the returns y of the first `steps` decisions."""
         alpha = jnp.exp(state.log_alpha)
         last = self.critic.value(state.target, paths.x[-1], paths.u[-1])
-        limit = (paid + alpha * abs(self._aim(paths))) / (1 - self.discount)
+        limit = (largest + alpha * paths.u.shape[-1]) / (1 - self.discount)
         y = jnp.clip(returns.soft(paths, alpha, self.discount, last)[1], -limit, limit)
-        first = slice(steps)
-        x, u = (each[first].reshape(-1, each.shape[-1]) for each in (paths.x, paths.u))
-        y, reached = y[first].ravel(), returns.reached(paths)[first].ravel()
+        x, u = (each[:steps].reshape(-1, each.shape[-1]) for each in (paths.x, paths.u))
+        y, reached = y[:steps].ravel(), returns.reached(paths)[:steps].ravel()
         rate = self.factor(params) * self.critic_learning_rate
         state, (loss, q) = self.critic_step(state, rate, x, u, y, reached)
         return state, {"sac/critic_loss": loss, "sac/q": q}
@@ -212,8 +214,9 @@ class SoftActorCritic(ActorCritic):
         self, state: ActorCriticState, along: Along, params: Params
     ) -> tuple[ActorCriticState, dict[str, Array]]:
         """`state` after a step of the temperature, and the target following; metrics."""
+        aim = -along.paths.u.shape[-1] if self.target_entropy is None else self.target_entropy
         rate = self.factor(params) * self.alpha_learning_rate
-        grad, optimiser = along.entropy - self._aim(along.paths), state.alpha_optimiser
+        grad, optimiser = along.entropy - aim, state.alpha_optimiser
         log_alpha, optimiser = adam_step(rate, grad, optimiser, state.log_alpha)
         target = self.followed(state.target, state.critic)
         metrics = {
@@ -224,10 +227,6 @@ class SoftActorCritic(ActorCritic):
         }
         state = state.replace(target=target, log_alpha=log_alpha, alpha_optimiser=optimiser)
         return state, metrics
-
-    def _aim(self, paths: Imagined) -> float:
-        """The entropy that the temperature aims at."""
-        return -paths.u.shape[-1] if self.target_entropy is None else self.target_entropy
 
 
 def adam_step(learning_rate: Array | float, grads: Any, state: Any, params: Any) -> tuple[Any, Any]:

@@ -48,7 +48,7 @@ class ModelBased(SoftActorCritic):
     steps: Natural = 5  # H; 0: the policy maximises the critic at the start states, as in SAC
     value_steps: int | None = None  # of the H decisions, at whose states the critic learns; None: H
     branch_steps: Natural = 20  # longest branch [decisions]; 0: starts at the states of the batch
-    branch_margin: Positive | None = None  # [ranges] beyond data where it ends; 3 with a history
+    branch_margin: Positive | None = None  # [ranges] beyond data; None: no end, or 3 with history
     branch_memory: int = 25_600  # imagined transitions that are kept; 0: drawn for each update
     alpha: Positive = 0.1  # initial temperature
     discount: Discount = 0.995
