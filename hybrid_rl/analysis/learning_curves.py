@@ -232,7 +232,7 @@ def plot(drawn: Sequence[Curve], x: str = "step") -> "Figure":
         panels = list(figure.subplots(down, across, squeeze=False).flat)
         for axes, some, (metric, task) in zip(panels, each, wanted, strict=False):
             axes.set_title(style.words(task))
-            _panel(axes, some, styles, x)
+            _panel(axes, some, styles, x, 5 if across < 3 else 3)
             axes.set_ylabel(LABELS.get(metric, metric))
             if not one_legend:
                 narrower = round(PER_INCH * (PANELS[0][0] - width))
@@ -257,7 +257,7 @@ def _entry(curve: Curve) -> str:
     return f"{style.words(curve.label)} ({plural(len(curve.seeds), 'seed')})"
 
 
-def _panel(axes: "Axes", drawn: list[Curve], styles: dict[str, Any], x: str) -> None:
+def _panel(axes: "Axes", drawn: list[Curve], styles: dict[str, Any], x: str, ticks: int) -> None:
     """The lines of one task and metric."""
     from matplotlib.ticker import FuncFormatter, MaxNLocator
 
@@ -272,7 +272,7 @@ def _panel(axes: "Axes", drawn: list[Curve], styles: dict[str, Any], x: str) -> 
         axis.set_major_locator(MaxNLocator(5))
         axis.set_major_formatter(FuncFormatter(style.thousands))
     if x in ("wall_s", "step"):
-        axes.set_xticks(MaxNLocator(5).tick_values(0, end / scale))  # up to the last step
+        axes.set_xticks(MaxNLocator(ticks).tick_values(0, end / scale))  # up to the last step
         axes.set_xlim(0, MARGIN * end / scale or 1.0)
 
 

@@ -16,11 +16,13 @@ from jax import Array
 
 from hybrid_rl.core.batching import repeat, where
 from hybrid_rl.core.statistics import FLOOR
-from hybrid_rl.protocols import Policy, Reward, Trainable
+from hybrid_rl.protocols import Policy, Reward
 from hybrid_rl.types import Batch, Params
 
 Transitions = Callable[[Array, Array, Array, Array], Batch]
 """x [b, n], noise [b, m] and [b, n], key -> a transition from each x."""
+Draw = Callable[[Array, Array, Array, Array], Array]
+"""x [b, n], u [b, m], noise [b, n], key -> next states [b, n]."""
 
 
 @struct.dataclass
@@ -38,12 +40,12 @@ class Branches:
         return self.replace(age=ended, count=jnp.zeros_like(self.count))
 
 
-def transitions(params: Params, policy: Policy, model: Trainable, reward: Reward) -> Transitions:
+def transitions(params: Params, policy: Policy, draw: Draw, reward: Reward) -> Transitions:
     """u ~ pi(x), x' ~ f(x, u) and r, end = reward(x, u, x'); `terminated` is a probability."""
 
     def one(x: Array, for_policy: Array, for_model: Array, key: Array) -> Batch:
         u = jax.vmap(policy.sample, (None, 0, 0))(params.policy, x, for_policy)[0]
-        after = model.draw(params.model, x, u, for_model, key)
+        after = draw(x, u, for_model, key)
         r, end = jax.vmap(reward.outcome, (None, 0, 0, 0))(params, x, u, after)
         return Batch(x, u, r, jax.nn.sigmoid(end), jnp.zeros(len(x)), after)
 

@@ -6,6 +6,7 @@ for each branch, drawn at each step. These are the branched rollouts of Janner e
 drawn for each update instead of stored.
 """
 
+from functools import partial
 from operator import attrgetter
 from typing import Any, ClassVar
 
@@ -54,7 +55,8 @@ class MBPO:
         count = round(self.imagined_fraction * self.batch_size)
         if count:
             drawing, key = jax.random.split(key)
-            step = branches.transitions(params, self.policy, self.model, self.reward)
+            draw = partial(self.model.draw, params.model)
+            step = branches.transitions(params, self.policy, draw, self.reward)
             m, start = batch.action.shape[-1], batch.obs[:count]
             imagined = branches.sample_fresh(step, start, m, self.steps, drawing)
             batch = jax.tree.map(

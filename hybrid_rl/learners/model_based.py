@@ -8,7 +8,8 @@ with c_t the chance that the episode continues. The policy maximises their soft 
 critic learns the y_t of the first `value_steps` of the same decisions (`core.returns`); with
 none of them, from one decision, as in SAC. The start states are those of branches that go on from
 one update to the next (`core.branches`), or of the replay memory. The rewards of the memory, not
-imagined ones, scale the critic and limit y: where a model leaves its data both would diverge.
+imagined ones, scale the critic and limit y, and no entry of a state changes by more than it did
+in the memory: where a model leaves its data all three would diverge.
 Sources: stochastic value gradients (Heess et al. 2015), MAAC (Clavera et al. 2020), model-based
 value expansion (Feinberg et al. 2018), MBPO (Janner et al. 2019).
 """
@@ -31,11 +32,12 @@ from hybrid_rl.types import Batch, Imagined, Params, Spec
 
 @struct.dataclass
 class ModelBasedState:
-    """The actor and critic, the branches, and what decisions earned."""
+    """The actor and critic, the branches, and what bounds imagined decisions."""
 
     learner: ActorCriticState
     branches: Branches | None  # None: none are kept
     largest: Array  # [] absolute reward of a decision in the batches so far
+    moved: Array  # [n] largest change of a state, likewise
 
 
 @part
@@ -75,7 +77,8 @@ class ModelBased(SoftActorCritic):
         if self.branch_steps and self.branch_memory:
             sizes = self.batch_size, self.branch_memory, spec.n, spec.act
             kept = branches.begin(*sizes, self.branch_steps, whole=not self._value_steps)
-        return ModelBasedState(self.begun(key, spec, self.alpha), kept, jnp.zeros(()))
+        learner = self.begun(key, spec, self.alpha)
+        return ModelBasedState(learner, kept, jnp.zeros(()), jnp.zeros(spec.n))
 
     def having(self, state: ModelBasedState, policy: Any) -> ModelBasedState:
         """`state` with these parameters of its policy."""
@@ -91,7 +94,8 @@ class ModelBased(SoftActorCritic):
         """One step of critic, policy, temperature and target. The key is consumed."""
         m, of_critic, paid = batch.action.shape[-1], {}, batch.reward
         largest = jnp.maximum(state.largest, jnp.abs(paid).max())
-        kept, batch, key = self._started(state.branches, params, batch, key)
+        moved = jnp.maximum(state.moved, jnp.abs(batch.next_obs - batch.obs).max(0))
+        kept, batch, key = self._started(state.branches, params, batch, moved, key)
         learner = self.observed(state.learner, batch._replace(reward=paid))
         acting, ahead = jax.random.split(key)
         if not self._value_steps:  # from decisions that were made, before the policy changes
@@ -100,22 +104,23 @@ class ModelBased(SoftActorCritic):
             learner, of_critic = self.evaluated(learner, made, 1, params, largest)
 
         def imagine(policy: Any) -> Imagined:
-            return self.imagine(params._replace(policy=policy), batch.obs, m, ahead)
+            return self.imagine(params._replace(policy=policy), batch.obs, m, ahead, moved)
 
         learner, along = self.improved(learner, imagine, params)
         if count := self._value_steps:
             learner, of_critic = self.evaluated(learner, along.paths, count, params, largest)
         learner, metrics = self.settled(learner, along, params)
-        return ModelBasedState(learner, kept, largest), of_critic | metrics
+        return ModelBasedState(learner, kept, largest, moved), of_critic | metrics
 
     def _started(
-        self, kept: Branches | None, params: Params, batch: Batch, key: Array
+        self, kept: Branches | None, params: Params, batch: Batch, moved: Array, key: Array
     ) -> tuple[Branches | None, Batch, Array]:
         """The branches, a batch of imagined transitions from the start states, and a new key."""
         if not self.branch_steps:
             return kept, batch, key
         drawing, key = jax.random.split(key)
-        step = branches.transitions(params, self.policy, self.model, self.reward)
+        draw = self._drawing(params, moved)
+        step = branches.transitions(params, self.policy, draw, self.reward)
         given = step, batch.obs, batch.action.shape[-1], self.branch_steps
         if kept is None:
             return None, branches.sample_fresh(*given, drawing), key
@@ -123,20 +128,32 @@ class ModelBased(SoftActorCritic):
         kept = branches.extended(kept, *given, extending, self.branch_margin)
         return kept, branches.sample_kept(kept, recalling), key
 
-    def imagine(self, params: Params, x: Array, m: int, key: Array) -> Imagined:
+    def _drawing(self, params: Params, moved: Array | float) -> branches.Draw:
+        """Draws of the model in which no entry of a state changes by more than `moved` [n]."""
+
+        def draw(x: Array, u: Array, noise: Array, key: Array) -> Array:
+            after, most = self.model.draw(params.model, x, u, noise, key), jnp.full_like(x, moved)
+            return jnp.clip(after, x - most, x + most)
+
+        return draw
+
+    def imagine(
+        self, params: Params, x: Array, m: int, key: Array, moved: Array | float = jnp.inf
+    ) -> Imagined:
         """`steps` decisions, of m entries each, from the states x [B, n]. The key is consumed.
 
-        Differentiable by `params.policy`, with the noise fixed (reparameterisation).
+        No entry of a state changes by more than `moved` [n] in a decision. Differentiable by
+        `params.policy`, with the noise fixed (reparameterisation).
         """
         acting, moving, choosing = jax.random.split(key, 3)
-        length = self.steps
+        length, draw = self.steps, self._drawing(params, moved)
         for_policy = jax.random.normal(acting, (length + 1, len(x), m))
         for_model = jax.random.normal(moving, (length, *x.shape))
 
         def forward(x: Array, at: Any) -> Any:
             noise, model_noise, key = at
             u, log_prob = self.policy.sample(params.policy, x, noise)
-            after = self.model.draw(params.model, x, u, model_noise, key)
+            after = draw(x, u, model_noise, key)
             return after, (x, u, log_prob, after)
 
         along = for_policy[:-1], for_model, jax.random.split(choosing, length)

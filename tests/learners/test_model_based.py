@@ -142,7 +142,9 @@ def test_the_critic_s_error_counts_where_it_is_reached_and_its_goal_is_the_targe
     def made(state: Any) -> tuple:
         params = PARAMS._replace(policy=state.policy)
         paths = learner.imagine(params, X, 1, jax.random.split(KEY)[1])
-        found = learner.update(ModelBasedState(state, None, jnp.inf), params, START, KEY)[1]
+        found = learner.update(
+            ModelBasedState(state, None, jnp.inf, jnp.full(2, jnp.inf)), params, START, KEY
+        )[1]
         last = [critic.value(q, paths.x[-1], paths.u[-1]) for q in (state.target, state.critic)]
         return paths, found, last, jax.vmap(critic.all, (None, 0, 0))(state.critic, *paths[:2])
 
@@ -185,7 +187,7 @@ def test_without_imagined_decisions_it_is_soft_actor_critic() -> None:
     def updated() -> tuple:
         first = begun(sac, spec)
         by_sac = sac.update(first, Params(), batch, KEY)
-        by_ours = ours.update(ModelBasedState(first, None, jnp.inf), Params(), batch, KEY)
+        by_ours = ours.update(ModelBasedState(first, None, jnp.inf, jnp.inf), Params(), batch, KEY)
         return (by_ours[0].learner, by_ours[1]), by_sac
 
     for mine, its in zip(*map(jax.tree.leaves, updated()), strict=True):
@@ -246,7 +248,7 @@ class Leaving(Staying):
 
 @pytest.mark.parametrize("value_steps", [None, 0])
 def test_the_critic_stays_within_what_decisions_earned(value_steps: int | None) -> None:
-    """3 in each of 1 / (1 - 0.5) decisions, though 2^9 are imagined."""
+    """3 in each of 1 / (1 - 0.5) decisions, though 2^9 are imagined; states change that much."""
     world: Any = Leaving(1.0)
     policy, critic = TanhGaussian((32,)), EnsembleQ((32, 32), normalise=True, scale=True)
     rates = {"critic_learning_rate": 3e-3, "alpha_learning_rate": 1e-9, "alpha": 1e-6}
@@ -256,10 +258,27 @@ def test_the_critic_stays_within_what_decisions_earned(value_steps: int | None) 
         **{"discount": 0.5, "tau": 0.05, "batch_size": 64, **rates},
     )
     zero, one = jnp.zeros(64), jnp.ones((64, 1))
-    seen = Batch(one, one, zero - 3, zero, zero, one)
+    seen = Batch(one, one, zero - 3, zero, zero, 1000 * one)
     state, _ = learned(learner, Spec(obs=1, act=1, dt=1.0), lambda key: seen, 1000)
     q = jax.vmap(critic.value, (None, 0, None))(
         state.learner.critic, jnp.array([[4.0], [16.0], [256.0]]), jnp.zeros(1)
     )
     assert q.min() > 3
     assert q.max() < 6.6
+
+
+def test_imagined_states_change_by_no_more_than_real_ones() -> None:
+    """Of branches of nine decisions that would double each time: by 0.5 and 0.25 in data."""
+    world: Any = Leaving(1.0)
+    learner = ModelBased(
+        *(TanhGaussian((8,)), EnsembleQ((8,)), world, world),
+        **{"steps": 3, "value_steps": 0, "branch_steps": 9},
+        **{"branch_memory": 64, "batch_size": 64},
+    )
+    zero, one = jnp.zeros(64), jnp.ones((64, 1))
+    moved = jnp.where(jnp.arange(64)[:, None] < 9, 0.5, -0.25)
+    seen = Batch(one, one, zero, zero, zero, one + moved)
+    state, _ = learned(learner, Spec(obs=1, act=1, dt=1.0), lambda key: seen, 20)
+    rows = state.branches.rows
+    np.testing.assert_allclose(rows.next_obs - rows.obs, 0.5, rtol=1e-6)
+    assert rows.obs.max() == 1 + 8 * 0.5
