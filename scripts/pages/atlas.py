@@ -94,8 +94,8 @@ def _cell(name: str, entry: dict[str, Any]) -> str:
 def entry_text(name: str, entry: dict[str, Any]) -> str:
     """What was found of one figure or table, from which numbers."""
     verdict, shows = entry["verdict"], filled(entry["shows"]).strip()
-    text = f"* **{name}** {verdict}{', with' if verdict == 'holds in part' else ':'} {shows}"
-    return f"{text} ({sources(entry)})" if entry["results"] else text
+    part = ", with" if verdict == "holds in part" else ":"
+    return f"* **{name}** {verdict}{part} {shows} ({sources(entry)})"
 
 
 def page() -> str:
@@ -107,7 +107,7 @@ def page() -> str:
         [INTRODUCTION, f"| {len(every)} figures and tables | |", "|---|---|", *counts, ""]
     )
     for title, chapter in chapters.items():
-        parts = [entry_text(name, entry) for name, entry in chapter.items()]
+        parts = [entry_text(name, entry) for name, entry in chapter.items() if "shows" in entry]
         details = [f"<details>\n<summary>{MORE}</summary>\n", *parts, "\n</details>\n"]
         text += f"\n## {title}\n\n{gallery(chapter)}\n\n" + "\n".join(details)
     return text
