@@ -8,8 +8,8 @@ with c_t the chance that the episode continues. The policy maximises their soft 
 critic learns the y_t of the first `value_steps` of the same decisions (`core.returns`); with
 none of them, from one decision, as in SAC. The start states are those of branches that go on from
 one update to the next (`core.branches`), or of the replay memory. The rewards of the memory, not
-imagined ones, scale the critic and limit y, and no entry of a state changes by more than it did
-in the memory: where a model leaves its data all three would diverge.
+imagined ones, scale the critic and limit y, and no entry of a state changes by more than
+`change_limit` times its largest change there: where a model leaves its data all would diverge.
 Sources: stochastic value gradients (Heess et al. 2015), MAAC (Clavera et al. 2020), model-based
 value expansion (Feinberg et al. 2018), MBPO (Janner et al. 2019).
 """
@@ -51,6 +51,7 @@ class ModelBased(SoftActorCritic):
     value_steps: int | None = None  # of the H decisions, at whose states the critic learns; None: H
     branch_steps: Natural = 20  # longest branch [decisions]; 0: starts at the states of the batch
     branch_margin: Positive | None = None  # [ranges] beyond data; None: no end, or 3 with history
+    change_limit: Positive = 3.0  # of an imagined state, in the largest real changes
     branch_memory: int = 25_600  # imagined transitions that are kept; 0: drawn for each update
     alpha: Positive = 0.1  # initial temperature
     discount: Discount = 0.995
@@ -129,10 +130,11 @@ class ModelBased(SoftActorCritic):
         return kept, branches.sample_kept(kept, recalling), key
 
     def _drawing(self, params: Params, moved: Array | float) -> branches.Draw:
-        """Draws of the model in which no entry of a state changes by more than `moved` [n]."""
+        """Draws of the model, limited, where the largest real change of a state is `moved` [n]."""
 
         def draw(x: Array, u: Array, noise: Array, key: Array) -> Array:
-            after, most = self.model.draw(params.model, x, u, noise, key), jnp.full_like(x, moved)
+            after = self.model.draw(params.model, x, u, noise, key)
+            most = jnp.full_like(x, self.change_limit * moved)
             return jnp.clip(after, x - most, x + most)
 
         return draw
@@ -142,7 +144,7 @@ class ModelBased(SoftActorCritic):
     ) -> Imagined:
         """`steps` decisions, of m entries each, from the states x [B, n]. The key is consumed.
 
-        No entry of a state changes by more than `moved` [n] in a decision. Differentiable by
+        Changes are limited where `moved` [n] is the largest real one. Differentiable by
         `params.policy`, with the noise fixed (reparameterisation).
         """
         acting, moving, choosing = jax.random.split(key, 3)
