@@ -224,9 +224,7 @@ def _autoreset_step(
     state, keys, count = carry
     last = jax.vmap(env.step)(state, actions)
     count = count + 1
-    truncated = (
-        (count >= steps) & ~last.terminated if steps > 0 else jnp.zeros_like(last.terminated)
-    )
+    truncated = (steps > 0) & (count >= steps) & ~last.terminated
     done = last.terminated | truncated
 
     def auto_reset() -> EnvState:
