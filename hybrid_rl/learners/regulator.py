@@ -6,8 +6,7 @@
 The horizon is finite: a lift that does not close under the dynamics has modes that no action
 reaches, and with an infinite horizon their cost has no bound. The model can be any with
 derivatives; for a Koopman operator A and B are K itself. A solution that is not finite is rejected
-and the last one kept. Source: thesis section 7.1.1, Algorithm 7, line 3; `thompson` explores by
-draws of the model (Thompson sampling; Abeille and Lazaric 2017).
+and the last one kept. Source: thesis section 7.1.1, Algorithm 7, line 3.
 """
 
 from functools import partial
@@ -21,7 +20,7 @@ from hybrid_rl.core import riccati
 from hybrid_rl.core.lifting import lifted_spec
 from hybrid_rl.core.riccati import linearise
 from hybrid_rl.core.solving import solve
-from hybrid_rl.fields import FILLED, Count, FieldError, NotNegative, Positive, part
+from hybrid_rl.fields import FILLED, Count, NotNegative, Positive, part
 from hybrid_rl.protocols import Balanced, GoalPolicy, Model
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -45,16 +44,10 @@ class RegulatorLearner:
     action_weights: tuple[Positive, ...] = (1.0,)  # diagonal of R: one for all actions, or one each
     horizon: Count = 128  # T [decisions]
     feedforward: bool = True  # false: hold = 0
-    thompson: float = 0.0  # noise of the data: solve for a draw of the model; 0: for its mean
     every: Count = 1  # decisions between two solutions
 
     data: ClassVar[str] = "latest"
     owns: ClassVar[tuple[str, ...]] = ("policy",)
-
-    def __post_init__(self) -> None:
-        if self.thompson < 0 or (self.thompson and getattr(self.model, "draw_model", None) is None):
-            words = "must be 0 or more; above 0 only with a linear model"
-            raise FieldError(self, "thompson", words)
 
     def init(self, key: Array, spec: Spec) -> SolutionState:
         """No gain yet. The key is consumed."""
@@ -76,11 +69,8 @@ class RegulatorLearner:
     def update(
         self, state: SolutionState, params: Params, batch: Batch, key: Array
     ) -> tuple[SolutionState, dict[str, Array]]:
-        """The solution for the model as it is; the decisions are not used. The key is consumed."""
-        model, drawn = params.model, getattr(self.model, "draw_model", None)
-        if drawn is not None and self.thompson:
-            model = drawn(model, self.thompson, key)
-        solved = self.solve(model, state.policy)
+        """The solution for the model as it is; neither the decisions nor the key are used."""
+        solved = self.solve(params.model, state.policy)
         finite = jnp.all(jnp.array([jnp.all(jnp.isfinite(leaf)) for leaf in solved.values()]))
         policy = {name: jnp.where(finite, solved[name], old) for name, old in state.policy.items()}
         rejected = state.rejected + ~finite

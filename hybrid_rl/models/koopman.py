@@ -29,8 +29,7 @@ class Koopman:
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Features, K [n, r] = [I 0] and its "spread" [r, r]. The key is consumed."""
         features = self.features.init(key, spec)
-        z = jax.eval_shape(self.features, features, jnp.zeros(spec.obs))
-        n = z.size
+        n = jax.eval_shape(self.features, features, jnp.zeros(spec.obs)).size
         if max(self.products, default=0) >= n:
             raise ValueError(f"model.products={list(self.products)}: x has entries 0 to {n - 1}")
         r = n + spec.act * (1 + len(self.products))
@@ -46,16 +45,10 @@ class Koopman:
 
     def step(self, params: dict[str, Any], x: Array, u: Array) -> Array:
         """The next x [n], clipped to the bound."""
-        after = params["K"] @ self.regressors(params, x, u)
-        return jnp.clip(after, -self.bound, self.bound)
+        return jnp.clip(params["K"] @ self.regressors(params, x, u), -self.bound, self.bound)
 
     def std(self, params: dict[str, Any], x: Array) -> Array:
         """Standard deviation [n] of K s at x [n] without action, in units of the noise's."""
         m = (params["K"].shape[1] - x.size) // (1 + len(self.products))
         s = self.regressors(params, x, jnp.zeros(m))
         return jnp.broadcast_to(jnp.sqrt(least_squares.leverage(params["spread"], s)), x.shape)
-
-    def draw_model(self, params: dict[str, Any], noise: float, key: Array) -> dict[str, Any]:
-        """Parameters with K from its posterior, K + noise N(0, I) W'. The key is consumed."""
-        e = jax.random.normal(key, params["K"].shape)
-        return {**params, "K": params["K"] + noise * e @ params["spread"].T}

@@ -252,9 +252,6 @@ class LinearModel(Uncertain, Protocol):
     def regressors(self, params: PyTree, x: Array, u: Array) -> Array:
         """s [r] at x [n] and u [m]."""
 
-    def draw_model(self, params: PyTree, noise: float, key: Array) -> PyTree:
-        """Parameters with K from its posterior, for a standard deviation `noise` of the data."""
-
 
 class Policy(Protocol):
     """u = pi(x), stochastic."""

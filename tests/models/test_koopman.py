@@ -114,19 +114,3 @@ def test_information_is_that_of_the_regression(criterion: str) -> None:
         more = U.T @ U + np.outer(s, s) / 0.1**2
         gain = np.linalg.slogdet(more)[1] - np.linalg.slogdet(U.T @ U)[1]
         assert r == pytest.approx(gain if criterion == "gain" else -1 / (s @ s + 1e-5), rel=1e-10)
-
-
-def test_draws_of_the_model_have_the_covariance_of_the_regression() -> None:
-    """noise^2 (U'U)^-1 for each row of K, around its mean."""
-    params = informed()
-    draws = jax.vmap(lambda key: INFORMED.draw_model(params, 0.5, key)["K"])(
-        jax.random.split(jax.random.key(0), 20000)
-    )
-    U = np.linalg.inv(np.asarray(params["spread"]))
-    covariance = 0.25 * np.linalg.inv(U.T @ U)
-    error = 5 * np.sqrt(np.diag(covariance) / len(draws))  # of the mean, five deviations
-    assert (np.abs(draws.mean(0) - params["K"]) < error[None]).all()
-    scale = np.sqrt(np.outer(np.diag(covariance), np.diag(covariance)))
-    for row in range(3):
-        difference = np.cov(np.asarray(draws[:, row]).T) - covariance
-        np.testing.assert_allclose(difference / scale, 0, atol=0.05)
