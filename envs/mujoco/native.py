@@ -159,13 +159,9 @@ def _call(
         advance(inputs.reshape(-1, inputs.shape[-1]), y.reshape(-1, width))
         return y
 
-    def on_accelerator(x: jax.Array) -> jax.Array:
-        return jax.pure_callback(callback, out, x, vmap_method="broadcast_all")
-
-    def on_cpu(x: jax.Array) -> jax.Array:
-        return jax.ffi.ffi_call(name, out, vmap_method="broadcast_all")(x)
-
-    return lambda x: jax.lax.platform_dependent(x, cpu=on_cpu, default=on_accelerator)
+    on_cpu = jax.ffi.ffi_call(name, out, vmap_method="broadcast_all")
+    elsewhere = partial(jax.pure_callback, callback, out, vmap_method="broadcast_all")
+    return lambda x: jax.lax.platform_dependent(x, cpu=on_cpu, default=elsewhere)
 
 
 def step(

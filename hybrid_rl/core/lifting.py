@@ -61,11 +61,9 @@ def lifted_spec(model: Model | None, spec: Spec) -> Spec:
     """`spec` with the size n of the model's planning state."""
     if model is None:
         return spec
-
-    def state(key: Array) -> Array:
-        return model.lift(model.init(key, spec), jnp.zeros(spec.obs))
-
-    return spec._replace(state=jax.eval_shape(state, jax.random.key(0)).size)
+    key, obs = jax.random.key(0), jnp.zeros(spec.obs)
+    x = jax.eval_shape(lambda key: model.lift(model.init(key, spec), obs), key)
+    return spec._replace(state=x.size)
 
 
 def select(obs: Array, coordinates: tuple[int, ...] | None) -> Array:

@@ -323,8 +323,5 @@ class DAgger:
         x = draw(state.labels, self.batch_size, key)[0]
         each = jax.vmap(lambda x: evidence(params, x))(x)
         rate = jnp.maximum(1 / state.decisions, RATE)
-
-        def mean(old: Array, each: Array) -> Array:
-            return old + rate * (each.mean(0) - old)
-
-        return state.replace(evidence=jax.tree.map(mean, state.evidence, each))
+        mean = jax.tree.map(lambda m, each: m + rate * (each.mean(0) - m), state.evidence, each)
+        return state.replace(evidence=mean)

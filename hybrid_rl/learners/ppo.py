@@ -13,6 +13,7 @@ RSL-RL (Rudin et al. 2022). The defaults lie among those that Brax and MuJoCo Pl
 locomotion tasks.
 """
 
+from functools import partial
 from typing import Any, ClassVar, NamedTuple
 
 import jax
@@ -121,10 +122,7 @@ class PPO:
         slot = (params.decisions // self.num_envs) % self.unroll
         kept = jax.tree.map(lambda all_, new: all_.at[slot].set(new), state.decisions, batch)
         state = state.replace(decisions=kept)
-
-        def learned(state: PPOState) -> PPOState:
-            return self._learned(state, params.scale, key)
-
+        learned = partial(self._learned, scale=params.scale, key=key)
         state = jax.lax.cond(slot == self.unroll - 1, learned, lambda state: state, state)
         return state, state.found
 

@@ -107,12 +107,9 @@ class Ensemble:
 
     def loss(self, params: dict[str, Any], obs: Array, action: Array, next_obs: Array) -> Array:
         """Mean [] over the members of their losses, each on its own share of [members * B, ...]."""
-
-        def one(weights: Any, obs: Array, action: Array, next_obs: Array) -> Array:
-            return self.model.loss({**params, "weights": weights}, obs, action, next_obs)
-
         shares = [x.reshape(self.members, -1, x.shape[1]) for x in (obs, action, next_obs)]
-        return jax.vmap(one)(params["weights"], *shares).mean()
+        one = jax.vmap(lambda w, *share: self.model.loss({**params, "weights": w}, *share))
+        return one(params["weights"], *shares).mean()
 
     def losses(self, params: dict[str, Any], obs: Array, action: Array, next_obs: Array) -> Array:
         """Loss [members, B] of each member on each of the transitions [B, ...]."""

@@ -39,9 +39,7 @@ class Acting:
         """keys: [S, N]."""
         (learners, worlds), self.spec, self._numbers = keys.shape, spec, dict(numbers)
         own = (lambda numbers: controller) if of is None else of
-
-        def first(numbers: Any) -> Any:
-            return batching.repeat(own(numbers).init(spec), worlds)
+        first = jax.vmap(lambda n: batching.repeat(own(n).init(spec), worlds), axis_size=learners)
 
         def decide(numbers: Any, params: Params, control: Any, obs: Array, keys: Array) -> tuple:
             keys, now = jnp.moveaxis(jax.vmap(jax.random.split)(keys), 1, 0)
@@ -49,7 +47,7 @@ class Acting:
             u, control, _ = act(params, control, obs, now)
             return u, control, keys
 
-        self._rest = jax.jit(jax.vmap(first, axis_size=learners))(self._numbers)
+        self._rest = jax.jit(first)(self._numbers)
         self._program: Any = jax.jit(jax.vmap(decide))
         self.begin(keys)
 

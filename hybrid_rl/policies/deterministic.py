@@ -150,11 +150,8 @@ class Clones(Deterministic):
 
     def _layers_of_each(self, params: dict[str, Any], x: Array) -> tuple[Array, Array]:
         """Features [members, ..., h] and mu [members, ..., m]."""
-
-        def one(weights: Any) -> tuple[Array, Array]:
-            return super(Clones, self).layers({**params, "weights": weights}, x)
-
-        return jax.vmap(one)(params["weights"])
+        one = super().layers
+        return jax.vmap(lambda weights: one({**params, "weights": weights}, x))(params["weights"])
 
     def each(self, params: dict[str, Any], x: Array) -> Array:
         """The action of every member [members, ..., m] at x [..., n]."""
@@ -162,9 +159,5 @@ class Clones(Deterministic):
 
     def log_prob(self, params: dict[str, Any], x: Array, u: Array) -> Array:
         """The sum [...] over the members of the log-density of z."""
-
-        def one(weights: Any) -> Array:
-            alone = {**params, "weights": jax.tree.map(lambda w: w[None], weights)}
-            return super(Clones, self).log_prob(alone, x, u)
-
-        return jax.vmap(one)(params["weights"]).sum(0)
+        one, each = super().log_prob, jax.tree.map(lambda w: w[:, None], params["weights"])
+        return jax.vmap(lambda weights: one({**params, "weights": weights}, x, u))(each).sum(0)

@@ -46,12 +46,9 @@ class PolicyInformation:
 
     def information(self, params: Params, x: Array) -> Array:
         """I(x) [P] at the planning state x [n]."""
-
-        def mu(weights: Any) -> Array:
-            return cast(Any, self.policy).unsquashed({**params.policy, "weights": weights}, x)
-
+        mu, own = cast(Any, self.policy).unsquashed, params.policy
         with precision.using("float32"):
-            F = fisher.jacobian(mu, params.policy["weights"])
+            F = fisher.jacobian(lambda weights: mu({**own, "weights": weights}, x), own["weights"])
         return fisher.diagonal(F, jnp.full(len(F), self.sigma))
 
     def evidence(self, params: Params, x: Array) -> Array | None:

@@ -177,8 +177,5 @@ class Episode:
 
         Under `vmap` the reset is computed only if some environment is done.
         """
-
-        def reset_done(state: EnvState, key: Array) -> EnvState:
-            return where(state.done, self.reset(key), state)
-
-        return when_any(lambda state: state.done, reset_done)(state, key)
+        reset = when_any(lambda s: s.done, lambda s, key: where(s.done, self.reset(key), s))
+        return reset(state, key)
