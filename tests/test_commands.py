@@ -68,13 +68,6 @@ def test_rows_have_the_documented_names(trained):
     ]
 
 
-def test_the_board_has_the_same_names(trained):
-    (board,) = (trained / "tensorboard").iterdir()
-    data = board.read_bytes()
-    names = {name for row in rows_of(trained) for name in row} - {"step", "seed", "wall_s"}
-    assert all(name.encode() in data for name in names)
-
-
 def test_the_summary_describes_the_run(trained):
     values = summary_of(trained)
     assert values.keys() >= {

@@ -5,7 +5,7 @@ import re
 from functools import partial
 
 import pytest
-from tiny import call, only_line
+from tiny import call, refusal
 
 from hybrid_rl.cli import command
 from hybrid_rl.tools.report import __main__ as report
@@ -98,6 +98,6 @@ def test_an_entry_is_of_one_method_on_one_machine(tmp_path, capfd):
     write(tmp_path / "runs" / "a", "sac")
     for algo, device, words in (("ddpg", "cpu: one", "ddpg, sac"), ("sac", "gpu: b", "gpu: b")):
         write(tmp_path / "runs" / algo / "b", algo, device)
-        assert main(f"run={tmp_path}/runs/a,{tmp_path}/runs/{algo}", f"out={tmp_path}/m.json") == 2
-        assert words in only_line(capfd)
+        given = f"run={tmp_path}/runs/a,{tmp_path}/runs/{algo}", f"out={tmp_path}/m.json"
+        assert words in refusal(capfd, *given, of=report.main)
         assert not (tmp_path / "m.json").exists()

@@ -99,18 +99,6 @@ def test_the_file_has_what_peers_json_has_of_a_method():
     assert compare_peers.clock({100: rows[100][:1]}) is None
 
 
-@pytest.mark.parametrize(
-    ("words", "line"),
-    [
-        (["env=Nothing-v1"], "env=Nothing-v1: "),
-        (["total_steps=400"], "total_steps=400: must be 1000 or more"),
-    ],
-)
-def test_a_wrong_argument_is_one_line(words, line, peer, tmp_path, capfd):
-    assert main(*GIVEN, f"out={tmp_path}/out.json", *words) == 2
-    assert line in only_line(capfd)
-
-
 NAMES = ("peers", "bf16")
 TABLES = values.RESULTS.parent / "tables.yaml"
 

@@ -6,8 +6,6 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-import jax
-import jax.numpy as jnp
 import pytest
 import small
 from hydra.utils import get_class, instantiate
@@ -126,22 +124,12 @@ def test_random_decisions_leave_half_of_a_short_run_to_learning(given, random) -
 
 
 def test_how_a_hybrid_method_learns_is_one_override() -> None:
-    """By default from five imagined decisions; learning=mbpo was the default until 0.2."""
-    c = config.load(["algo=hybrid_stochastic"])
-    learner = c.learners.policy
-    assert (learner.steps, learner.value_steps, learner.branch_memory) == (5, None, 25600)
-    assert (c.random_steps, config.load(["task=cartpole"]).random_steps) == (5000, 1000)
     for algo in ("hybrid_stochastic", "hybrid_disagreement"):
         c = config.load(["learning=mbpo", f"algo={algo}"])
-        learner = c.learners.policy
-        assert (learner.imagined_fraction, learner.steps, learner.learner.updates) == (0.9, 3, 10)
-        assert c.random_steps == 1000
+        assert (c.learners.policy.learner.updates, c.random_steps) == (10, 1000)
         config.build(c)
         config.build(config.load(["learning=replay", f"algo={algo}"]))
-    c = config.load(["settings=fast"])
-    learner = c.learners.policy
-    assert (learner.updates, c.learners.model.updates, learner.value_steps) == (1, 1, 1)
-    config.build(c)
+    config.build(config.load(["settings=fast"]))
 
 
 def test_settings_quick_makes_as_many_updates_a_round_in_any_number_of_worlds() -> None:
@@ -178,40 +166,14 @@ def test_the_planner_of_a_method_has_neither_policy_nor_critic(algo: str) -> Non
         instantiate(node, _convert_="all")
         for node in (composed.controllers.planner, composed[used])
     )
-    assert (planner.policy, planner.objective.critic, planner.objective.policy) == (None,) * 3
+    inside = planner, planner.objective, getattr(planner, "proposal", None)
+    assert [getattr(each, "policy", None) for each in inside] == [None] * 3
     assert planner.objective == dataclasses.replace(full, critic=None, policy=None)
     assert planner.horizon >= (20 if full.critic else 5)
     thesis = config.load(["experiment=thesis/fig_3_2_hopper", f"algo={algo}"]).controllers.planner
     assert thesis.horizon == 5
     if "proposal" in thesis:
         assert (thesis.samples, thesis.proposal.std) == (20, 0.3)
-
-
-@pytest.mark.parametrize("algo", ["hybrid_stochastic", "hybrid_deterministic"])
-def test_the_planner_of_a_method_does_not_depend_on_the_critic(algo: str) -> None:
-    """Its action is the same with other parameters of critic and policy; that of `full` is not."""
-    overrides = ["task=pendulum", f"algo={algo}", *SMALL, "model=gaussian", "model.hidden=[8]"]
-    if algo == "hybrid_stochastic":
-        overrides += ["model_planner.horizon=2", "model_planner.samples=3"]
-    else:
-        overrides += ["shooting_planner.horizon=2"]
-    run = config.build(config.load(overrides))
-    obs, init = (
-        jnp.array([1.0, 0.0, 0.1]),
-        jax.jit(lambda key: run.agent.params(run.agent.init(key))),
-    )
-    first, second = (init(jax.random.key(seed)) for seed in range(2))
-    others = first._replace(critic=second.critic, policy=second.policy)
-
-    def actions(mode: str) -> tuple[jax.Array, ...]:
-        controller, key = run.controllers[mode], jax.random.key(2)
-        act, start = jax.jit(controller.act), controller.init(run.agent.spec)
-        return tuple(act(params, start, obs, key)[0] for params in (first, others))
-
-    same, other = actions("planner")
-    assert (same == other).all()
-    same, other = actions("full")
-    assert (same != other).all()
 
 
 def test_the_root_has_few_slots() -> None:

@@ -53,6 +53,7 @@ class Probe:
         ({"rate": float("nan")}, "rate=nan: must be above 0"),
         ({"count": 10**12}, "count=1000000000000: must be at most 1073741824"),
         ({"rate": True}, "rate=true: must be a number"),
+        ({"discount": {"a": 1}}, "discount={'a': 1}: must be a number, or null"),
         ({"names": [1]}, "names=[1]: must be a whole number, 2 or more"),
         ({"tau": 3}, "tau=3: must lie in (0, 1]"),
         ({"discount": 1.0}, "discount=1.0: must lie in [0, 1), or null"),
@@ -111,18 +112,12 @@ def test_a_run_names_the_shortest_key_of_the_field():
 @pytest.mark.parametrize(
     ("given", "line"),
     [
-        ("random_steps=1000000000000", "random_steps=1000000000000: must be at most 1073741824"),
-        ("random_steps=true", "random_steps=true: must be a whole number"),
         ("episode.sensor_noise=[]", "episode.sensor_noise=[]: must be one number, or 3 of them"),
-        ("critic.pessimism={a: 1}", "critic.pessimism={'a': 1}: must be a number, or null"),
         ("policy_learner.updates=1e-30", "or 1 / a whole number, of at most 1073741824"),
-        ("policy_learner.tau=null", "policy_learner.tau=null: must be a number"),
-        ("replay.demonstrations=[]", "replay.demonstrations=[]: must be a part, or null"),
         ("model.model.inputs=[3]", "model.inputs=[3]: must be some of the entries 0 to 2"),
         ("algo=kle3 equilibrium.free=[9]", "equilibrium.free=[9]: must be some of 0 to 1, not all"),
         ("task=two_link algo=kle3_bayesopt", "belief.size=1: must be 2, as of the domain"),
         ("algo=sac learner@policy_learner=flash_sac", "needs policy=unit_gaussian"),
-        ("algo=analytic model=sines", "model=Gaussian: AnalyticGradient learns with it, and no le"),
     ],
 )
 def test_what_no_run_can_use_is_refused_before_it(given, line):

@@ -5,7 +5,7 @@ import sys
 
 import pytest
 from matplotlib.figure import Figure
-from tiny import call, contents
+from tiny import call, contents, refusal
 
 from hybrid_rl import figures
 from hybrid_rl.cli import command
@@ -154,14 +154,11 @@ def test_learning_curves_are_the_default(tmp_path, capsys):
         (["study=toy", "title=x", "points=1"], "points=1: must be a whole number, 2 or more"),
     ],
 )
-def test_bad_usage_is_one_line_and_code_2(toy, tmp_path, monkeypatch, capsys, arguments, line):
+def test_bad_usage_is_one_line_and_code_2(toy, tmp_path, monkeypatch, capfd, arguments, line):
     folder = runs(tmp_path / "runs")
     (tmp_path / "numbers.json").write_text('{"view": "falls"}')
     monkeypatch.chdir(tmp_path)
     before = contents(tmp_path)
-    assert draw(*(text.replace("RUNS", str(folder)) for text in arguments)) == 2
-    printed = capsys.readouterr()
-    assert printed.out == ""
-    assert printed.err.count("\n") == 1
-    assert line in printed.err
+    given = (text.replace("RUNS", str(folder)) for text in arguments)
+    assert line in refusal(capfd, *given, of=figures.main)
     assert contents(tmp_path) == before

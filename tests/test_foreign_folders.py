@@ -6,12 +6,11 @@ from pathlib import Path
 
 import pytest
 from foreign import METRIC, ROW, made, no_plain_file, refused
-from tiny import call, only_line
+from tiny import refusal
 
 from hybrid_rl import __version__, figures
 from hybrid_rl.analysis import tables
 from hybrid_rl.analysis.results import RunFolder
-from hybrid_rl.cli import command
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.logs.log import RunLog
 from hybrid_rl.tools.report import __main__ as report
@@ -80,15 +79,14 @@ def test_a_damaged_row_is_named(folder, bad):
 
 def test_a_damaged_summary_is_one_line(folder, capfd):
     (folder / "summary.json").write_text("{1}")
-    assert call(lambda: command.run(report.main), f"run={folder}", "video=none") == 2
-    assert only_line(capfd).startswith(f"hybrid_rl: {folder}/summary.json: ")
+    line = refusal(capfd, f"run={folder}", "video=none", of=report.main)
+    assert line.startswith(f"hybrid_rl: {folder}/summary.json: ")
 
 
 def test_a_run_without_a_finite_evaluation_has_no_curve(folder, capfd):
     (folder / "metrics.jsonl").write_text(json.dumps(ROW | {"eval/return": None}) + "\n")
-    line = [f"runs={folder}", METRIC, "out=a.png"]
-    assert call(lambda: command.run(figures.main), *line) == 2
-    assert "metric=eval/return: has no finite value in these runs" in only_line(capfd)
+    line = refusal(capfd, f"runs={folder}", METRIC, "out=a.png", of=figures.main)
+    assert "metric=eval/return: has no finite value in these runs" in line
 
 
 HEAD = "exp_name,env_name,seed,metric,env_step,value\n"

@@ -13,7 +13,7 @@ from hybrid_rl import list as listed
 from hybrid_rl.cli import command
 from hybrid_rl.files.targets import part_class
 from hybrid_rl.settings import build as config
-from hybrid_rl.settings.groups import CONF, file
+from hybrid_rl.settings.groups import file
 
 HAS = {  # method of an environment -> what its task says
     "dynamics": "analytic dynamics",
@@ -61,15 +61,6 @@ def test_each_name_has_the_first_comment_of_its_file(conf):
         "algo": {"ring": "Around a ring.", "actor": "Actor and critic."},
         "experiment": {"thesis/deep/table_1": "", "thesis/figure_2": "Figure 2."},
     }
-
-
-def test_the_command_prints_one_line_each(capsys):
-    assert show() == 0
-    printed = capsys.readouterr().out.splitlines()
-    for group in listed.GROUPS:
-        for path in (CONF / group).rglob("*.yaml"):
-            name = path.relative_to(CONF / group).with_suffix("").as_posix()
-            assert [line for line in printed if line.split()[:1] == [name]], f"{group}={name}"
 
 
 def test_every_one_says_what_it_is():

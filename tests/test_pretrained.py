@@ -10,7 +10,6 @@ from tiny import call, refusal
 from hybrid_rl import evaluate
 from hybrid_rl.cli import command
 from hybrid_rl.data import archive
-from hybrid_rl.errors import UsageError
 from hybrid_rl.run.saved import names, read
 from hybrid_rl.settings import build as config
 
@@ -47,28 +46,6 @@ def test_evaluating_it_gives_its_number(capsys):
     (then,) = [line.split()[2] for line in lines if line.startswith("evaluated then: ")]
     (now,) = [line.split()[3] for line in lines if line.startswith("│    0 │")]
     assert float(now.replace(",", "")) == pytest.approx(float(then.replace(",", "")), rel=1e-3)
-
-
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"env": {"_target_": "os.system", "command": "true"}}, "_target_=os.system: is no part"),
-        (
-            {"policy": {"_target_": "hybrid_rl.policies.tanh_gaussian.TanhGaussian", "_args_": []}},
-            "TanhGaussian.* unexpected keyword argument '_args_'",
-        ),
-        ({"seed": None}, "its description lacks seed"),
-    ],
-)
-def test_a_description_calls_nothing_but_parts(tmp_path, change, words):
-    """A file may come from anywhere."""
-    with np.load(archive.find("policies/lander.npz")) as file:
-        arrays = dict(file)
-    about = json.loads(str(arrays["about"])) | change
-    about = {key: value for key, value in about.items() if value is not None}
-    np.savez(tmp_path / "a.npz", **arrays | {"about": np.array(json.dumps(about))})
-    with pytest.raises(UsageError, match=words):
-        read(f"{tmp_path / 'a.npz'}")
 
 
 def test_a_file_without_a_description_is_one_line(tmp_path, capfd):

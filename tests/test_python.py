@@ -252,9 +252,3 @@ def test_the_rows_of_runs_are_a_table(monkeypatch, tmp_path):
     rows.append({"step": 4, "seed": 1, "wall_s": 1.0, "model/loss": 3.0})
     (tmp_path / "metrics.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
     assert hr.metrics(tmp_path) == [{"run": str(tmp_path), **row} for row in rows]
-
-
-def test_without_pandas_the_error_names_it(monkeypatch):
-    monkeypatch.setitem(sys.modules, "pandas", None)
-    with pytest.raises(ImportError, match="pandas"):
-        curve().frame()

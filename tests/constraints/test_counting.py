@@ -91,9 +91,6 @@ def test_learners_are_paid_less_and_the_return_stays() -> None:
     ("given", "line"),
     [
         ("constraint=pace", "constraint=pace: unknown; choose one of .*height, limit, pitch, "),
-        ("constraint=pitch", "constraint.quantity=pitch: choose one of height, speed"),
-        ("constraint=limit", "constraint.most=null: limits nothing; give most, least or both"),
-        ("constraint=torque constraint.most=2", r"constraint.most=2: must lie in \(0, 1\]"),
         ("task=van_der_pol constraint=speed", "needs an environment with `quantities`"),
     ],
 )

@@ -69,11 +69,13 @@ EVIL = {"_target_": "hybrid_rl.files.atomic.write_text", "path": "ran"}
 ABOUT: tuple[dict[str, Any], ...] = (
     {"env": EVIL},
     {"policy": {"_target_": "a.B", "x": [[EVIL]]}},
+    {"env": {"_target_": "os.system", "command": "true"}},
     {"env": [1]},
     {"env": {"_target_": "hybrid_rl.core.domain.Box"}},
     {"episode": {"action_repeat": "x"}},
     {"episode": {"_target_": "hybrid_rl.training.episode.Episode"}},
     {"policy": {"_target_": "hybrid_rl.policies.linear.Linear", "x": 1}},
+    {"policy": {"_target_": "hybrid_rl.policies.linear.Linear", "_args_": []}},
 )
 
 

@@ -91,9 +91,7 @@ def test_the_policy_is_the_one_that_the_file_describes(file: Path) -> None:
 @pytest.mark.parametrize(
     ("fields", "words"),
     [
-        ({"task": "cartpole"}, "is of task pendulum; this run has task cartpole"),
         ({"world": PointMass()}, "is of obs 3; this run has obs 4"),
-        ({"episode": {"action_repeat": 4}}, "is of dt 0.05; this run has dt 0.2"),
         ({"policy": TanhGaussian((4, 4), "sin", normalise=True)}, r"bias is \(8,\); .* \(4,"),
         ({"policy": TanhGaussian((8, 4), "sin")}, r"policy/state.* is .*; it must be absent"),
         (
@@ -103,7 +101,6 @@ def test_the_policy_is_the_one_that_the_file_describes(file: Path) -> None:
     ],
 )
 def test_a_file_for_another_use_is_refused(file: Path, fields: dict, words: str) -> None:
-    """Another task, rate or policy."""
     with pytest.raises(ValueError, match=words):
         opened(file, **fields)
 

@@ -1,6 +1,5 @@
 """What a run prints: what to expect, how to go on, how it ended."""
 
-import itertools
 import json
 import shlex
 
@@ -9,7 +8,6 @@ import pytest
 from test_session import SAC
 from tiny import TINY, call_train, rows_of, run
 
-from hybrid_rl.analysis import learning_curves
 from hybrid_rl.errors import WorldError
 from hybrid_rl.run.logs.records import result_line
 from hybrid_rl.run.session import Session
@@ -67,16 +65,3 @@ def test_the_last_line_has_both_returns():
         "evaluation -19.5 (mean of 2 seeds); "
         "training return -36.4 over the last tenth (mean of 2 seeds)"
     )
-    one = {"final_eval": [1234.5], "final_return": [None]}
-    assert result_line(one) == "evaluation 1,234.5; training return none yet"
-
-
-def test_the_curve_of_several_seeds_says_what_it_is(tmp_path, capsys):
-    rows = [
-        {"step": step, "seed": seed, "wall_s": step, "eval/return": seed * step}
-        for step, seed in itertools.product((100, 200, 300), range(3))
-    ]
-    (tmp_path / "metrics.jsonl").write_text("".join(f"{json.dumps(row)}\n" for row in rows))
-    (tmp_path / "config.yaml").write_text("task: hopper\nalgo: sac\nseed: 0\n")
-    learning_curves.show(tmp_path)
-    assert "Evaluation return, interquartile mean of 3 seeds (" in capsys.readouterr().out

@@ -171,52 +171,32 @@ KILLED = """
 import os, signal, sys
 from pathlib import Path
 import jax.numpy as jnp
-from hybrid_rl.run.checkpoints import checkpoint, leaves
-folder = Path(sys.argv[1])
-checkpoint.save(folder, 1, {"x": jnp.ones(3)}, {})
-checkpoint._rename = lambda draft, path: os.kill(os.getpid(), signal.SIGKILL)
-checkpoint.save(folder, 2, {"x": jnp.zeros(3)}, {})
-"""
-
-
-def test_a_kill_before_the_rename_leaves_the_one_before(tmp_path):
-    done = subprocess.run([sys.executable, "-c", KILLED, str(tmp_path)], check=False)
-    assert done.returncode == -signal.SIGKILL
-    assert any(tmp_path.glob(".2.*.tmp"))
-    step, result, _, notes = checkpoint.restore(tmp_path, {"x": jnp.zeros(3)})
-    assert (step, result["x"].tolist(), notes) == (1, [1, 1, 1], [])
-    checkpoint.save(tmp_path, 3, {"x": jnp.zeros(3)}, {})
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["1", "3"]
-
-
-BETWEEN = """
-import os, signal, sys
-from pathlib import Path
-import jax.numpy as jnp
 from hybrid_rl.run.checkpoints import checkpoint
-folder = Path(sys.argv[1])
+folder, step, rename = Path(sys.argv[1]), int(sys.argv[2]), Path.rename
 checkpoint.save(folder, 1, {"x": jnp.ones(3)}, {})
-rename = Path.rename
 
 
 def killed(path, target):
-    rename(path, target)
-    if target.name.startswith(".1.replaced."):
-        os.kill(os.getpid(), signal.SIGKILL)
+    if step == 1:
+        rename(path, target)
+    os.kill(os.getpid(), signal.SIGKILL)
 Path.rename = killed
-checkpoint.save(folder, 1, {"x": jnp.zeros(3)}, {})
+checkpoint.save(folder, step, {"x": jnp.zeros(3)}, {})
 """
 
 
-def test_a_kill_between_the_renames_leaves_the_replaced_one(tmp_path):
-    done = subprocess.run([sys.executable, "-c", BETWEEN, str(tmp_path)], check=False)
-    assert done.returncode == -signal.SIGKILL
-    assert not (tmp_path / "1").exists()
+@pytest.mark.parametrize("step", [1, 2])
+def test_a_kill_before_or_between_the_renames_leaves_the_one_before(tmp_path, step):
+    """A second one of the same step: between the two renames."""
+    line = [sys.executable, "-c", KILLED, str(tmp_path), str(step)]
+    assert subprocess.run(line, check=False).returncode == -signal.SIGKILL
+    assert any(tmp_path.glob(f".{step}.*.tmp"))
+    assert (tmp_path / "1").exists() == (step == 2)
     assert checkpoint.steps(tmp_path) == [1]
-    step, result, _, notes = checkpoint.restore(tmp_path, {"x": jnp.zeros(3)})
-    assert (step, result["x"].tolist(), notes) == (1, [1, 1, 1], [])
-    checkpoint.save(tmp_path, 2, {"x": jnp.zeros(3)}, {})
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["1", "2"]
+    found, result, _, notes = checkpoint.restore(tmp_path, {"x": jnp.zeros(3)})
+    assert (found, result["x"].tolist(), notes) == (1, [1, 1, 1], [])
+    checkpoint.save(tmp_path, 3, {"x": jnp.zeros(3)}, {})
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["1", "3"]
 
 
 def test_a_folder_is_read_while_its_checkpoints_are_deleted(three, monkeypatch):

@@ -119,9 +119,7 @@ def test_learners_that_do_not_fit_are_counted(tmp_path, monkeypatch, capfd):
     """Before the first decision, from what the compiled program needs."""
     monkeypatch.setattr(memory, "available", lambda: 2e5)  # 16 replay memories, but no more
     line = [*TINY, "algo=sac", "num_seeds=16", f"run_dir={tmp_path / 'many'}"]
-    assert call_train(*line) == 1
-    printed = capfd.readouterr().err
-    assert printed.count("\n") == 1
+    printed = refusal(capfd, *line, code=1)
     result = re.search(r"num_seeds=16: the program would take .*; about (\d+) would fit", printed)
     assert result is not None, printed
     fits = int(result[1])

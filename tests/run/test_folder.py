@@ -12,7 +12,6 @@ import yaml
 from omegaconf import OmegaConf
 from tiny import (
     TINY,
-    call,
     call_train,
     contents,
     demonstrate,
@@ -24,7 +23,6 @@ from tiny import (
 
 from hybrid_rl import __version__, evaluate
 from hybrid_rl.analysis.results import RunFolder
-from hybrid_rl.cli import command
 from hybrid_rl.errors import UsageError, WorldError
 from hybrid_rl.files.lock import lock
 from hybrid_rl.run import folder as run_folder
@@ -38,8 +36,8 @@ trained = finished("algo=sac", "num_seeds=2", "total_steps=100", "checkpoint_eve
 
 def test_a_run_that_is_being_written_is_not_resumed(copied, trained, capfd):
     with lock(copied, "run_dir"):
-        assert call_train(f"resume={copied}", "total_steps=200") == 2
-        assert "is being written by process" in only_line(capfd)
+        line = refusal(capfd, f"resume={copied}", "total_steps=200")
+        assert "is being written by process" in line
         (copied / "lock").unlink()
         assert contents(copied) == contents(trained)
 
@@ -76,11 +74,9 @@ def harm(folder, kind):
 def test_a_damaged_configuration_is_blamed_on_its_file(copied, capfd, kind):
     words = harm(copied, kind)
     before = contents(copied)
-    assert call(lambda: command.run(evaluate.main), f"run={copied}") == 2
-    lines = [only_line(capfd)]
+    lines = [refusal(capfd, f"run={copied}", of=evaluate.main)]
     assert words in lines[0]
-    assert call_train(f"resume={copied}", "total_steps=200") == 2
-    lines.append(only_line(capfd))
+    lines.append(refusal(capfd, f"resume={copied}", "total_steps=200"))
     assert OF_RESUME.get(kind, words) in lines[-1]
     for line in lines:
         assert line.startswith(f"hybrid_rl: {copied}/config.yaml"), line
@@ -111,8 +107,8 @@ def test_a_broken_world_is_not_blamed_on_the_file(tmp_path):
 
 
 def test_a_value_of_the_user_is_not_blamed_on_the_file(copied, capfd):
-    assert call_train(f"resume={copied}", "total_steps=0") == 2
-    assert "hybrid_rl: total_steps=0: must be" in only_line(capfd)
+    line = refusal(capfd, f"resume={copied}", "total_steps=0")
+    assert "hybrid_rl: total_steps=0: must be" in line
 
 
 @pytest.mark.parametrize("there", [None, "", "notes.txt"])
@@ -200,11 +196,8 @@ def test_a_word_that_reads_as_a_number_stays_a_word():
 @pytest.mark.parametrize("key", ["run", "resume"])
 def test_a_run_of_an_older_version_is_one_line_and_stays(old, tmp_path, capfd, key):
     before, commit = contents(tmp_path), summary_of(old)["git_commit"]
-    if key == "resume":
-        assert call_train(f"resume={old}", "total_steps=200") == 2
-    else:
-        assert call(lambda: command.run(evaluate.main), f"run={old}") == 2
-    assert only_line(capfd) == (
+    of = None if key == "resume" else evaluate.main
+    assert refusal(capfd, f"{key}={old}", of=of) == (
         f"hybrid_rl: {key}={old}: made by hybrid_rl 0.1.0, and this is {__version__}; "
         f"check out its commit, {commit}, or train again\n"
     )

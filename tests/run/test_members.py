@@ -125,15 +125,12 @@ def test_a_learner_that_diverges_ends_alone(tmp_path, capfd):
     ("key", "words"),
     [
         ("policy_learner.updates=[1,2]", "they decide what is compiled; use -m policy_learner.up"),
-        ("policy_learner.batch_size=[8,16]", "use -m policy_learner.batch_size=8,16"),
         ("policy_learner.tau=[0.1,2]", "policy_learner.tau=2: must lie in (0, 1]"),
         ("policy_learner.tau=0.1", "must be a list of different numbers, such as [0.99,0.995]"),
         ("policy_learner.tau=[0.1,0.1]", "=[0.1, 0.1]: must be a list of different numbers"),
         ("policy_learner.tua=[0.1,0.2]", "sac has no such key; did you mean policy_learner.tau?"),
-        ("planner.temperature=[0.1,0.2]", "sweep.planner.temperature: sac has no such key"),
         ("episode.sensor_noise=[0.1,0.2]", "as they decide what is compiled; use -m"),
         ("seed=[1,2]", "it is no number of a learner or a controller; use -m seed=1,2"),
-        ("num_envs=[1,2]", "use -m num_envs=1,2"),
     ],
 )
 def test_what_no_program_can_hold_is_refused_in_one_line(key, words, tmp_path, capfd):

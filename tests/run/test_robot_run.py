@@ -10,7 +10,7 @@ import time
 
 import numpy as np
 import pytest
-from tiny import call, only_line
+from tiny import call, refusal
 
 import hybrid_rl
 from hybrid_rl import evaluate, robot
@@ -28,6 +28,7 @@ from hybrid_rl.tools.stand_in import Physics
 from hybrid_rl.types import Spec
 
 LINE = ["task=robot", "env.make=hybrid_rl.envs.adapters.stand_in:Cartpole", "algo=sac"]
+SMALL = [*LINE, "policy.hidden=[8]", "critic.hidden=[8]", "policy_learner.batch_size=8"]
 SPEC = Spec(Cartpole.obs, len(Cartpole.low), Cartpole.dt)
 
 
@@ -46,10 +47,9 @@ def port():
 
 
 def test_a_run_on_a_robot(port, tmp_path, capfd):
-    line = [*LINE, f"env.kwargs={{port:{port}}}", "policy.hidden=[8]"]
-    line += ["critic.hidden=[8]", "random_steps=20", "checkpoint_every=50", "log_every=25"]
     folder, rows = tmp_path / "run", []
-    line += ["policy_learner.batch_size=8", "episode.steps=30", f"run_dir={folder}"]
+    line = [*SMALL, f"env.kwargs={{port:{port}}}", "random_steps=20", "checkpoint_every=50"]
+    line += ["log_every=25", "episode.steps=30", f"run_dir={folder}"]
     result = hybrid_rl.train([*line, "total_steps=100"], on_row=rows.append, progress=False)
     assert result["finished"]
     means = [row for row in rows if "robot/late_s" in row]
@@ -89,41 +89,40 @@ def test_a_stand_in_obeys_its_driver_after_a_foreign_datagram():
     physics.socket.close()
 
 
+def fill(process, count):
+    """Give a robot's process as many rows."""
+    log = RowLog(process.folder / "rows", SPEC)
+    for n in range(log.count(), count):
+        row = np.zeros((), log.kind)
+        row["number"] = n
+        log.append(row)
+
+
 def test_a_robot_that_ends_a_run_leaves_what_was_learned(tmp_path, capfd, monkeypatch):
     """As an emergency stop that its class raises."""
 
     def watch(process):
-        log = RowLog(process.folder / "rows", SPEC)
-        for n in range(3 if log.read(0) is None else 0):
-            row = np.zeros((), log.kind)
-            row["number"] = n
-            log.append(row)
+        fill(process, 3)
         if process.tries:
             raise WorldError("arm.py:39: Stop: pressed")
         process.tries = 1
 
     monkeypatch.setattr(RobotProcess, "watch", watch)
     monkeypatch.setattr(RobotProcess, "stop", lambda process: None)
-    line = [*LINE, "policy.hidden=[8]", "critic.hidden=[8]", "policy_learner.batch_size=8"]
     with pytest.raises(WorldError, match="Stop: pressed"):
-        hybrid_rl.train([*line, "total_steps=100", f"run_dir={tmp_path / 'run'}"])
+        hybrid_rl.train([*SMALL, "total_steps=100", f"run_dir={tmp_path / 'run'}"])
     assert (tmp_path / "run" / "checkpoints" / "3").is_dir()
     assert "continue: python -m hybrid_rl.train resume=" in capfd.readouterr().out
 
 
 def test_a_resumed_run_learns_from_the_rows_that_wait(tmp_path, capfd, monkeypatch):
     def watch(process):
-        log = RowLog(process.folder / "rows", SPEC)
-        for n in range(0 if process.ended else 600 - log.count()):
-            row = np.zeros((), log.kind)
-            row["number"] = n
-            log.append(row)
+        fill(process, 600)
         process.ended = True
 
     monkeypatch.setattr(RobotProcess, "watch", watch)
     monkeypatch.setattr(RobotProcess, "stop", lambda process: None)
-    line = [*LINE, "policy.hidden=[8]", "critic.hidden=[8]", "policy_learner.batch_size=8"]
-    line += ["random_steps=0", "log_every=10", f"run_dir={tmp_path / 'run'}"]
+    line = [*SMALL, "random_steps=0", "log_every=10", f"run_dir={tmp_path / 'run'}"]
     for steps, words in ((20, line), (40, [f"resume={tmp_path / 'run'}"])):
         rows = []
         result = hybrid_rl.train([*words, f"total_steps={steps}"], on_row=rows.append)
@@ -141,8 +140,8 @@ def test_one_process_moves_a_robot(tmp_path, capfd, monkeypatch):
     files.mkdir()
     with lock(files, "run"):
         assert RobotProcess(Robot(Cartpole), files).alive()
-        assert call(lambda: command.run(robot.main), f"run={tmp_path}") == 2
-        assert f"is being written by process {os.getpid()} on" in only_line(capfd)
+        line = refusal(capfd, f"run={tmp_path}", of=robot.main)
+        assert f"is being written by process {os.getpid()} on" in line
     assert not RobotProcess(Robot(Cartpole), files).alive()
 
 

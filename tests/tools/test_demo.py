@@ -1,22 +1,19 @@
 """The first minute."""
 
 import pytest
-from tiny import call, only_line
+from tiny import call, refusal
 
 from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.tools import demo
 
 
-def demonstrate(*words):
-    return call(lambda: command.run(demo.main), *words)
-
-
 def test_it_shows_a_robot_and_what_to_type_next(tmp_path, monkeypatch, capsys, can_draw):
     """A video, or without graphics the reason and what to install."""
     monkeypatch.setattr(demo, "SHOWN", 3)
     out = tmp_path / "robot.mp4"
-    assert demonstrate("policy=pendulum", f"out={out}", "window=false") == 0
+    words = ["policy=pendulum", f"out={out}", "window=false"]
+    assert call(lambda: command.run(demo.main), *words) == 0
     printed = capsys.readouterr().out
     assert "trained policies: ant, cartpole" in printed
     assert "pendulum: 3 decisions, return" in printed
@@ -57,5 +54,4 @@ def test_a_window_needs_a_display_and_viser(monkeypatch):
     ],
 )
 def test_what_does_not_fit_is_one_line(words, line, capfd):
-    assert demonstrate(*words.split()) == 2
-    assert line in only_line(capfd)
+    assert line in refusal(capfd, *words.split(), of=demo.main)

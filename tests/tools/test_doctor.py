@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from tiny import call, finished, only_line, summary_of
+from tiny import call, finished, summary_of
 
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
@@ -348,13 +348,6 @@ def test_a_policy_below_linear_ones_may_decide_too_often(pair, monkeypatch):
     for high in (0.0, 9.0):
         line = linear.better(given)
         assert ("episode.action_repeat=4" in line) if high else line is None
-
-
-def test_what_is_no_run_is_one_line(tmp_path, capfd):
-    assert main(f"run={tmp_path}") == 2
-    assert "no run folder there" in only_line(capfd)
-    assert main("run=") == 2
-    assert "run: not given" in only_line(capfd)
 
 
 def test_a_run_without_memory_is_examined_by_its_rows(folder, tmp_path):

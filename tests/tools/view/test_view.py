@@ -200,7 +200,6 @@ def test_plots_leave_out_what_does_not_apply():
 @pytest.mark.parametrize(
     ("words", "line"),
     [
-        ("", "run, policy, task: give one of them"),
         ("task=panda_stack mode=policy", "mode: is not for panda_stack"),
         ("policy=ant host=192.0.2.1", "host=192.0.2.1 port=8080: cannot be used"),
         ("policy=ant port=70000", "port=70000: must be a whole number, 1 to 65535"),
