@@ -22,6 +22,7 @@ if __name__ == "__main__":
     interrupt.install()
 
 from pathlib import Path
+from typing import Any
 
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import CONFIG_DIR, MODE, Argument, flag, output, read, whole
@@ -55,11 +56,7 @@ def main() -> None:
     if given["run"] and (changes or given["expert"]):
         raise UsageError("env, episode, expert: a run has its own; give them with task=T")
     if given["policy"]:
-        file, models = output("policy", given["policy"], (".npz",)), given["models"]
-        folder = Path(given["run"])
-        task, count = save_policy(file, folder, given["learner"], given["command"], models)
-        what = "policy and models" if models else "policy"
-        print(f"{file}: the {what} of {folder}, {count:,} parameters, task {task}")
+        _write_policy(given)
         return
     out, episodes, seed = given["out"], given["episodes"], given["seed"]
     if out:
@@ -81,6 +78,15 @@ def main() -> None:
     if recording.success is not None:
         line += f", {int(recording.success.sum())} succeeded"
     print(line)
+
+
+def _write_policy(given: dict[str, Any]) -> None:
+    """Write the parameters of the policy of run=DIR to policy=FILE."""
+    file, models = output("policy", given["policy"], (".npz",)), given["models"]
+    folder = Path(given["run"])
+    task, count = save_policy(file, folder, given["learner"], given["command"], models)
+    what = "policy and models" if models else "policy"
+    print(f"{file}: the {what} of {folder}, {count:,} parameters, task {task}")
 
 
 if __name__ == "__main__":

@@ -224,7 +224,9 @@ def _autoreset_step(
     state, keys, count = carry
     last = jax.vmap(env.step)(state, actions)
     count = count + 1
-    truncated = (steps > 0) & (count >= steps) & ~last.terminated
+    truncated = (
+        (count >= steps) & ~last.terminated if steps > 0 else jnp.zeros_like(last.terminated)
+    )
     done = last.terminated | truncated
 
     def auto_reset() -> EnvState:

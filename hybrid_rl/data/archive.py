@@ -81,13 +81,17 @@ def read(
         if array.dtype.kind not in ("U" if name in WORDS else "biuf"):
             raise ValueError(f"{prefix} {name} must hold {'text' if name in WORDS else 'numbers'}")
     if header:
-        task, sizes, dt = (arrays[name] for name in HEADER)
-        if sizes.shape != (2,) or sizes.dtype.kind not in "iu" or dt.ndim or task.ndim:
-            raise ValueError(f"{prefix} sizes must be two numbers, dt a number, task a name")
-        if not NAME.fullmatch(str(task)):
-            line = "must be letters, digits, _, . and -"
-            raise ValueError(f"{prefix} task={str(task)[:40]!r}: {line}")
+        _check_header(prefix, arrays)
     return arrays
+
+
+def _check_header(prefix: str, arrays: Mapping[str, np.ndarray]) -> None:
+    """Raise ValueError unless the header has the form that `write` gives it."""
+    task, sizes, dt = (arrays[name] for name in HEADER)
+    if sizes.shape != (2,) or sizes.dtype.kind not in "iu" or dt.ndim or task.ndim:
+        raise ValueError(f"{prefix} sizes must be two numbers, dt a number, task a name")
+    if not NAME.fullmatch(str(task)):
+        raise ValueError(f"{prefix} task={str(task)[:40]!r}: must be letters, digits, _, . and -")
 
 
 def check_task(

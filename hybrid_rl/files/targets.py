@@ -21,6 +21,7 @@ import sysconfig
 from collections.abc import Collection, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import is_dataclass
+from functools import cache
 from importlib import import_module, metadata
 from importlib.machinery import PathFinder
 from importlib.util import find_spec
@@ -224,8 +225,14 @@ def _of_user(folder: Path) -> bool:
     if not any(folder == Path(entry or os.curdir).resolve() for entry in sys.path):
         return False
     installed = {"site-packages", "dist-packages"} & {*folder.parts}
-    python = [Path(sysconfig.get_path(name)) for name in ("stdlib", "platstdlib", "scripts")]
-    return not installed and not any(own.resolve() in (folder, *folder.parents) for own in python)
+    return not installed and not any(own in (folder, *folder.parents) for own in _of_python())
+
+
+@cache
+def _of_python() -> tuple[Path, ...]:
+    """The folders of Python itself."""
+    names = ("stdlib", "platstdlib", "scripts")
+    return tuple(Path(sysconfig.get_path(name)).resolve() for name in names)
 
 
 def absent(name: str) -> bool:

@@ -95,8 +95,7 @@ class HostLoop(Loop):
             state, led = jax.vmap(self._observed, (0, 0, 0, None))(state, u, got, made)
             rows = put(rows, led, row - 1)
         u, state, metrics = jax.vmap(self._decide, (0, None))(state, step)
-        sent = state.memory, state.env.obs, send(u, ticket, *SEEDS)
-        state = state.replace(memory=jax.vmap(self.agent.replay.expecting)(*sent))
+        state = jax.vmap(self._expecting)(state, send(u, ticket, *SEEDS))
         if self.early:
             state, learned = jax.vmap(self._learn, (0, None))(state, step)
             metrics |= learned
@@ -117,6 +116,10 @@ class HostLoop(Loop):
     def _learn(self, state: AgentState, step: Array) -> tuple[AgentState, dict[str, Array]]:
         """`Agent.learn` of one learner."""
         return self._of(state.numbers).learn(state, step)
+
+    def _expecting(self, state: AgentState, u: Array) -> AgentState:
+        """One learner whose memory has the actions u [E, m]."""
+        return state.replace(memory=self.agent.replay.expecting(state.memory, state.env.obs, u))
 
     def _observed(
         self, state: AgentState, u: Array, got: Outcome, made: Array | int

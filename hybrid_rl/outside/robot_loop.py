@@ -89,10 +89,7 @@ class RobotProgram:
         learner.state, learner.learned, began, host, updates = state, first, time.monotonic(), [], 0
         learner.clear()
         if self.room is None:
-            agent, memory = self.loop.agent, state.memory
-            held, given = int(memory.count[0]), agent.replay.num_demonstrated(1)
-            learner.read = max(first, held - given - max(-agent.first_update, 0))
-            self.room = learner.read + memory.rows.shape[1] - held
+            self.room = self._resumed(first)
         most = max(first + count, self.room)
         while len(host) < count and not self.loop.cut:
             now = time.monotonic()
@@ -118,6 +115,13 @@ class RobotProgram:
         rate = updates / max(time.monotonic() - began, 1e-9)
         own = [[*row, rate, behind] for row in host]
         return learner.state, self._metrics(own)
+
+    def _resumed(self, step: int) -> int:
+        """Count the rows in the memory, perhaps more than `step`; how many fit into it."""
+        agent, memory = self.loop.agent, self.learner.state.memory
+        held, given = int(memory.count[0]), agent.replay.num_demonstrated(1)
+        self.learner.read = max(step, held - given - max(-agent.first_update, 0))
+        return self.learner.read + memory.rows.shape[1] - held
 
     def _take_lag(self) -> None:
         """Learn from what acted, once it is known how late: given, or by all random decisions.

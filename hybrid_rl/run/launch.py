@@ -119,33 +119,37 @@ class Job:
         """The contents of summary.json of each run, which are written."""
         shelf, summaries = session.shelf, []
         for run, log, share in zip(self.runs, shelf.logs, shelf.shares(), strict=True):
-            values, config = plain(run.config), run.config
-            ends, rate = session.record.ends, session.record.learning.rate
-            summary = {
-                "task": config.task,
-                "algo": config.algo,
-                "seeds": list(session.loop.seeds[share]),
-                "total_steps": session.step,
-                "finished": session.finished,
-                "final_return": session.final_returns()[share],
-                "final_eval": session.record.final_eval[share],
-                "diverged": [end for s, end in ends.items() if share.start <= s < share.stop],
-                "before_s": session.began - BEGAN,  # from the command to where wall_s is 0
-                "wall_s": session.wall_s,
-                "compile_s": session.compile_s,
-                "env_steps_per_s": None if rate is None else rate / len(shelf.logs),
-                "physics": configuration.physics(config),
-                "device": provenance.device(),
-                "precision": precision.current(),
-                "versions": provenance.versions(),
-                "git_commit": provenance.git_commit(),
-                "run_dir": str(log.run_dir),
-                **{key: values[key] for key in ("run", "begun", "freeze") if values.get(key)},
-                "signal": session.stop or None,
-            }
-            summaries.append(summary)
-            log.summary(summary)
+            summaries.append(_summary(run.config, session, log.run_dir, share))
+            log.summary(summaries[-1])
         return summaries
+
+
+def _summary(config: DictConfig, session: Session, run_dir: Path, share: slice) -> dict[str, Any]:
+    """The contents of summary.json of the learners in `share`."""
+    values = plain(config)
+    ends, rate = session.record.ends, session.record.learning.rate
+    return {
+        "task": config.task,
+        "algo": config.algo,
+        "seeds": list(session.loop.seeds[share]),
+        "total_steps": session.step,
+        "finished": session.finished,
+        "final_return": session.final_returns()[share],
+        "final_eval": session.record.final_eval[share],
+        "diverged": [end for s, end in ends.items() if share.start <= s < share.stop],
+        "before_s": session.began - BEGAN,  # from the command to where wall_s is 0
+        "wall_s": session.wall_s,
+        "compile_s": session.compile_s,
+        "env_steps_per_s": None if rate is None else rate / len(session.shelf.logs),
+        "physics": configuration.physics(config),
+        "device": provenance.device(),
+        "precision": precision.current(),
+        "versions": provenance.versions(),
+        "git_commit": provenance.git_commit(),
+        "run_dir": str(run_dir),
+        **{key: values[key] for key in ("run", "begun", "freeze") if values.get(key)},
+        "signal": session.stop or None,
+    }
 
 
 def written(config: DictConfig) -> dict[str, Any]:

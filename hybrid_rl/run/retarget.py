@@ -91,12 +91,7 @@ def retargeted(
     worlds = [text for text in overrides if text.startswith(("env.", "episode."))]
     goal = [text for text in overrides if text not in worlds]
     now, before = aimed(trained, goal, config_dir)
-    if before is not None:  # takes seconds
-        params, new = by_learner(now, partial(before.learned, now.episode))
-        old = [str(seed) for seed, gained in zip(now.seeds, new, strict=True) if not gained]
-        note = f"imagine: {before.updates:,} updates in the models"
-        note += f"; by these no gain, so the old policy acts: seed {', '.join(old)}" if old else ""
-        now = replace(now, params=params, notes=(*now.notes, note))
+    now = now if before is None else _taught(now, before)
     if not worlds:
         return now
     assert now.config is not None
@@ -169,6 +164,15 @@ def by_learner(trained: Trained, one: Callable[[Params, Array], Any]) -> Any:
     """The results [S, ...] of `one` for the parameters and the key of each learner."""
     keys = jnp.stack([jax.random.fold_in(jax.random.key(seed), 0x1DEA) for seed in trained.seeds])
     return compile_lowered(jax.jit(jax.vmap(one)).lower(trained.params, keys))(trained.params, keys)
+
+
+def _taught(trained: Trained, before: Imagination) -> Trained:
+    """`trained` with the policies that `before` gives, which takes seconds, and a note about it."""
+    params, new = by_learner(trained, partial(before.learned, trained.episode))
+    old = [str(seed) for seed, gained in zip(trained.seeds, new, strict=True) if not gained]
+    note = f"imagine: {before.updates:,} updates in the models"
+    note += f"; by these no gain, so the old policy acts: seed {', '.join(old)}" if old else ""
+    return replace(trained, params=params, notes=(*trained.notes, note))
 
 
 def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
