@@ -51,7 +51,7 @@ class ModelBased(SoftActorCritic):
     value_steps: int | None = None  # of the H decisions, at whose states the critic learns; None: H
     branch_steps: Natural = 20  # longest branch [decisions]; 0: starts at the states of the batch
     branch_margin: Positive | None = None  # [ranges] beyond data; None: no end, or 3 with history
-    change_limit: Positive = 3.0  # of an imagined state, in the largest real changes
+    change_limit: Positive = 100.0  # of an imagined state, in largest real changes: none overflows
     branch_memory: int = 25_600  # imagined transitions that are kept; 0: drawn for each update
     alpha: Positive = 0.1  # initial temperature
     discount: Discount = 0.995
