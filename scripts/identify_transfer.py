@@ -149,8 +149,7 @@ def main() -> None:
     given: Any = arguments.read(__doc__, ARGUMENTS)[0]
     size = {name: given[name] for name in ("seeds", "steps", "history")}
     folder = Path(tempfile.mkdtemp())
-    file = folder / "arm.xml"
-    file.write_text(ARM)
+    (file := folder / "arm.xml").write_text(ARM)
     arm = parameters(file)
     values = dict(zip(arm.names, arm.nominal.tolist(), strict=True))
     elements = {name: [a * values[name], b * values[name]] for name, (a, b) in FACTORS.items()}
@@ -185,8 +184,8 @@ def main() -> None:
             ),
         }
         if given["hidden"]:
-            best = folder / f"best_{k}"
-            loaded["hidden"] = trained(hidden, best, delay=arm.delay(theta), **size)
+            at = {"delay": arm.delay(theta), **size}
+            loaded["hidden"] = trained(hidden, folder / f"best_{k}", **at)
         row = {name: returns(each, given["seeds"], plant) for name, each in loaded.items()}
         error = (found.theta / np.maximum(theta, 1e-3) - 1).tolist()
         described = {"plant": k, "theta": theta.tolist(), "relative": error}

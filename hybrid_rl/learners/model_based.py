@@ -8,7 +8,7 @@ with c_t the chance that the episode continues. The policy maximises their soft 
 critic learns the y_t of the first `value_steps` of the same decisions (`core.returns`); with
 none of them, from one decision, as in SAC. The start states are those of branches that go on from
 one update to the next (`core.branches`), or of the replay memory. The rewards of the memory, not
-imagined ones, scale the critic and limit y, and no entry of a state changes by more than
+imagined ones, scale the critic and limit y, and no entry of an imagined state changes by more than
 `change_limit` times its largest change there: where a model leaves its data all would diverge.
 Sources: stochastic value gradients (Heess et al. 2015), MAAC (Clavera et al. 2020), model-based
 value expansion (Feinberg et al. 2018), MBPO (Janner et al. 2019).
