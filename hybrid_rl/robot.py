@@ -25,6 +25,7 @@ import jax
 
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import MODE, Argument, flag, number, read
+from hybrid_rl.envs.adapters.robot import PENDING
 from hybrid_rl.errors import UsageError
 from hybrid_rl.files.atomic import refuse_link
 from hybrid_rl.files.lock import lock
@@ -33,6 +34,7 @@ from hybrid_rl.outside.robot_process import report
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.run.saved import build_run, load
+from hybrid_rl.training.ahead import ahead
 
 HIGHER = 10  # priority of the robot's process, where the system allows it
 ARGUMENTS = (
@@ -48,7 +50,7 @@ def _trained(folder: Path, mode: str) -> Actor:
     trained = load(folder)
     controller, params = trained.learner(None, mode)
     assert trained.agent is not None
-    agent = replace(trained.agent, controller=controller)
+    agent = replace(trained.agent, controller=ahead(controller, 0.0, PENDING))
     return Actor(agent, folder / "robot", trained.seeds[0], False, jax.device_put(params))
 
 

@@ -25,10 +25,12 @@ from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.core.lifting import lifted_spec
 from hybrid_rl.data import archive
 from hybrid_rl.data.trained import SavedPolicy, part
+from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.mujoco.physics import resolve
 from hybrid_rl.errors import UsageError, printable
 from hybrid_rl.files import targets as parts
 from hybrid_rl.outside.acting import TrainedPolicy
+from hybrid_rl.outside.lag import known_lag
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.checkpoints.store import read_part
@@ -38,8 +40,10 @@ from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings.build import Run
 from hybrid_rl.settings.values import check
 from hybrid_rl.training.agent import Agent, AgentState
+from hybrid_rl.training.ahead import ahead
 from hybrid_rl.training.contract import needs_world
 from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.wrappers import whole
 from hybrid_rl.types import Params
 
 DESCRIBED = ("env", "episode", "policy", "seed", "step")  # keys of every `about`
@@ -119,10 +123,20 @@ def load(folder: Path | str, key: str = "run") -> Trained:
     with run_folder.blame_config(folder):
         check(config)
         prepare(config)
-        trained = of(build_run(config), folder)
+        trained = with_lag(of(build_run(config), folder), folder)
     for note in trained.notes:
         say(note)
     return replace(trained, config=config, notes=())
+
+
+def with_lag(trained: Trained, folder: Path) -> Trained:
+    """`trained`, with the lag that was found last if it is a robot's."""
+    env = trained.episode.env
+    if not isinstance(env, Robot):
+        return trained
+    lag = float(whole((known_lag(env, folder / "robot") or 0.0) / env.spec.dt))
+    acting = {mode: ahead(each, lag) for mode, each in trained.controllers.items()}
+    return replace(trained, controllers=acting)
 
 
 def of(run: Run, folder: Path) -> Trained:

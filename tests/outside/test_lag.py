@@ -2,8 +2,18 @@
 
 import numpy as np
 import pytest
+from counting import Counting
 
+from hybrid_rl.controllers.policy import PolicyController
+from hybrid_rl.envs.adapters.robot import Robot
+from hybrid_rl.envs.analytic.pendulum import Pendulum
+from hybrid_rl.models.exact import Exact
 from hybrid_rl.outside import lag as lags
+from hybrid_rl.policies.tanh_gaussian import TanhGaussian
+from hybrid_rl.run.saved import Trained, with_lag
+from hybrid_rl.training.ahead import ahead
+from hybrid_rl.training.episode import Episode
+from hybrid_rl.types import Params
 
 DT, KEPT = 0.05, 5  # [s] of a decision; actions that are remembered
 
@@ -60,3 +70,17 @@ def test_a_lag_that_changes_is_followed_by_a_model(late, before):
     found = lags.followed(lambda x, u: np.column_stack([x, u]) @ solved, rows, before)
     assert found / DT == pytest.approx(late, rel=0.1, abs=0.06)
     assert lags.followed(lambda x, u: x, rows, before) == before
+
+
+@pytest.mark.parametrize(("lag", "decisions"), [(None, 0), (0.0002, 0), (0.005, 2)])
+def test_a_robots_controllers_act_at_the_lag_that_was_found_last(tmp_path, lag, decisions):
+    """Rounded up to whole decisions of 4 ms; on time they are plain policies, as ONNX needs."""
+    env, policy = Robot(make=Counting), PolicyController(TanhGaussian((8,)), Exact(Pendulum()))
+    folder = tmp_path / "robot"
+    folder.mkdir()
+    if lag is not None:
+        lags.publish(folder, lag)
+    acting = {"policy": ahead(policy, 0.0, most=9)}
+    trained = Trained("robot", Episode(env, steps=5), acting, Params(), (0,), 0, ())
+    found = with_lag(trained, tmp_path).controllers["policy"]
+    assert found == (ahead(policy, 2.0) if decisions else policy)
