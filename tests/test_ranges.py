@@ -60,7 +60,7 @@ from hybrid_rl.types import Params
 ROOMS = "beliefs constraints controllers critics features learners models objectives policies"
 ROOMS += " proposals rewards schedules targets"
 FREE = {  # numbers without a range: of any value, or checked with another field or the world
-    *("Aim.target", "EmbeddingLearner.capacity", "EmbeddingLearner.interval", "Ensemble.elites"),
+    *("Aim.target", "EmbeddingLearner.capacity", "EmbeddingLearner.interval"),
     *("Limit.least", "Limit.most", "ModelBased.branch_memory", "ModelBased.target_entropy"),
     "ModelBased.value_steps",
     *("Run.direction", "SAC.target_entropy", "SoftActorCritic.target_entropy"),
@@ -150,7 +150,6 @@ WHITE = NoiseProposal()
 KEY = jax.random.key(0)
 PATHLESS = Mixture(((0.1,),), (1.0,), (1.0,))
 GAUSSIAN = Gaussian(hidden=(8,))
-RANKED = Ensemble(GAUSSIAN, 3, elites=2)
 
 
 def limit(**given: Any) -> Any:
@@ -181,7 +180,6 @@ TOGETHER = [  # what is made, and how the line begins, behind the name of the pa
     (dagger(length=5), "length=5: .*model"),
     (lambda: EmbeddingLearner(Koopman(Monomials()), interval=4), "interval=4: .* 5 or more"),
     (lambda: EmbeddingLearner(Koopman(Monomials()), capacity=100), "capacity=100: .* 200"),
-    (lambda: ModelLearner(RANKED), r"model\.elites=2: needs .*holdout"),
     (
         lambda: ModelLearner(GAUSSIAN, RewardNetwork(next_state=True), reward_discount=0.9),
         r"next_state=true: .*reward_discount=0",
@@ -192,8 +190,7 @@ TOGETHER = [  # what is made, and how the line begins, behind the name of the pa
     (lambda: CategoricalQ(hidden=(8, 16)), r"hidden=\[8, 16\]"),
     (lambda: UnitGaussian(hidden=()), r"hidden=\[\]"),
     (lambda: Gaussian(layer_norm="scale"), "layer_norm=scale"),
-    (lambda: Ensemble(GAUSSIAN, 4, elites=5), "elites=5: .* 1 to"),
-    (lambda: Turned(RANKED, POLE), "world=Pendulum: .*heading"),
+    (lambda: Turned(Ensemble(GAUSSIAN, 3), POLE), "world=Pendulum: .*heading"),
     (lambda: Disagreement(GAUSSIAN), "choose model=ensemble"),
     (lambda: FisherInformation(GAUSSIAN, probes=4), "probes=4: .*criterion=T"),
     (lambda: WeightedSum(TERMS, {"a": 1.0}), "weights need a, b"),

@@ -8,21 +8,12 @@ the planner then sums a second time. Where an episode ended, also by its time li
 executed at x', so that the target is only the reward. Without a reward the loss is that of thesis
 eq. (6.24)-(6.25).
 
-A share `holdout` of all decisions never enters a gradient or a statistic: those with
-
-    mix(sum_i mix(b_i + i g)) < share 2^32
-
-where b_i are the bits of the entries of (o, u), g = 2^32 / 1.618, and mix is the last step of
-MurmurHash3 (Appleby 2011). A decision is held out or not for a whole run and after a resume, in any
-order of the memory, and nothing is stored. The model's loss on them,
-a running mean over the updates, is logged and ranks the members of an ensemble with elites. The
-decay of weights is AdamW's (Loshchilov and Hutter 2019).
+The decay of weights is AdamW's (Loshchilov and Hutter 2019).
 """
 
 from typing import Annotated, Any, ClassVar, cast
 
 import jax
-import jax.numpy as jnp
 import optax
 from flax import struct
 from jax import Array
@@ -32,19 +23,9 @@ from hybrid_rl.core.decay import adamw
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
 from hybrid_rl.fields import Count, Discount, NotNegative, Positive, has, part
 from hybrid_rl.protocols import Reward, Schedule, Trainable
-from hybrid_rl.types import Batch, Params, PyTree, Spec
+from hybrid_rl.types import Batch, Params, Spec
 
-GOLDEN = 0x9E3779B9  # 2^32 / 1.618
 KNOWN = "has no weights to learn; give model_learner.reward=null"
-RATE = 0.01  # of the running mean of the held-out loss, per update (our choice)
-
-
-@struct.dataclass
-class HeldOut:
-    """The loss on held-out decisions."""
-
-    mean: Array  # [members] running mean
-    count: Array  # [] updates with held-out decisions
 
 
 @struct.dataclass
@@ -54,7 +35,6 @@ class ModelState:
     model: Any
     reward: Any  # None without a reward
     optimiser: Any
-    held_out: PyTree = None  # HeldOut, or None without
 
 
 @part
@@ -76,7 +56,6 @@ class ModelLearner:
     reward_discount: Discount = 0.0
     max_grad_norm: Positive | None = None
     weight_decay: NotNegative = 0.0  # of the layers' matrices, per unit of learning rate
-    holdout: Discount = 0.0  # share of the decisions
     schedule: Schedule | None = None  # of the learning rates
 
     data: ClassVar[str] = "uniform"
@@ -88,11 +67,6 @@ class ModelLearner:
                 "reward_model.next_state=true: the value of x' would need the state after it; give "
                 "model_learner.reward_discount=0"
             )
-        if self._elites is not None and not self.holdout:
-            raise ValueError(
-                f"model.elites={self._elites}: needs decisions that rank the members; give "
-                "model_learner.holdout, such as 0.1"
-            )
 
     @property
     def owns(self) -> tuple[str, ...]:
@@ -103,11 +77,6 @@ class ModelLearner:
     def batches(self) -> int:
         """One for each member of an ensemble."""
         return self.model.members
-
-    @property
-    def _elites(self) -> int | None:
-        """Members of an ensemble that draw states, if not all do."""
-        return getattr(self.model, "elites", None)
 
     def _optimiser(self, factor: Array | float = 1.0) -> optax.GradientTransformation:
         adam = adamw(factor * self.learning_rate, self.weight_decay)
@@ -124,8 +93,7 @@ class ModelLearner:
             model = self.model.init(for_model, spec)
             reward = cast(Any, self.reward).init(for_reward, lifted_spec(self.model, spec))
         optimiser = self._optimiser().init(_weights(model, reward))
-        none = HeldOut(jnp.zeros(self.batches), jnp.zeros(())) if self.holdout else None
-        return ModelState(model, reward, optimiser, none)
+        return ModelState(model, reward, optimiser)
 
     def params(self, state: ModelState) -> dict[str, Any]:
         """The model, and the reward if there is one."""
@@ -135,10 +103,6 @@ class ModelLearner:
         self, state: ModelState, params: Params, batch: Batch, key: Array
     ) -> tuple[ModelState, dict[str, Array]]:
         """One Adam step: the model's loss on all batches, the reward's on the first."""
-        whole, held = batch, None
-        if state.held_out is not None:
-            held = flags(batch.obs, batch.action, self.holdout)
-            batch = without(batch, held)
         model = self.model.observe(state.model, batch.obs, batch.next_obs)
         reward, reward_loss = self._reward(state.reward, model, batch)
 
@@ -160,23 +124,7 @@ class ModelLearner:
         metrics = {"model/loss": of_model}
         if of_reward is not None:
             reward, metrics["model/reward_loss"] = {**reward, "weights": r}, of_reward
-        state = ModelState({**model, "weights": f}, reward, optimiser, state.held_out)
-        if held is not None:
-            count = max(1, round(self.holdout * len(whole.obs)))  # held out, on average
-            state = self._judged(state, *only(whole, held, count))
-            metrics["model/held_out_loss"] = state.held_out.mean.mean()
-        return state, metrics
-
-    def _judged(self, state: ModelState, rows: Batch, real: Array) -> ModelState:
-        """The state after losses on held-out decisions `rows` [B], of which `real` [B] count."""
-        part, before = self.model, state.held_out
-        each = part.losses(state.model, rows.obs, rows.action, rows.next_obs)
-        now = (each * real[None]).sum(1) / jnp.maximum(real.sum(), 1)
-        count = before.count + real.any()
-        rate = jnp.where(real.any(), jnp.maximum(1 / jnp.maximum(count, 1), RATE), 0)
-        mean = before.mean + rate * (now - before.mean)
-        model = state.model if self._elites is None else part.rank(state.model, mean)
-        return state.replace(model=model, held_out=HeldOut(mean, count))
+        return ModelState({**model, "weights": f}, reward, optimiser), metrics
 
     def _reward(self, reward: Any, model: Any, batch: Batch) -> tuple[Any, Any]:
         """The reward's parameters with updated statistics, and its loss as a function."""
@@ -207,37 +155,3 @@ class ModelLearner:
 def _weights(model: Any, reward: Any) -> tuple[Any, Any]:
     """The weights that gradient steps change."""
     return model["weights"], None if reward is None else reward["weights"]
-
-
-def flags(obs: Array, action: Array, share: float) -> Array:
-    """Which decisions are held out [B], for observations [B, o] and actions [B, m]."""
-    entries = jnp.concatenate([obs, action], 1).astype(jnp.float32)
-    bits = jax.lax.bitcast_convert_type(entries, jnp.uint32)
-    offsets = jnp.arange(bits.shape[1], dtype=jnp.uint32) * jnp.uint32(GOLDEN)
-    mixed = _mix(_mix(bits + offsets[None]).sum(1, dtype=jnp.uint32))
-    return mixed < jnp.uint32(round(share * (2**32 - 1)))
-
-
-def without(batch: Batch, held: Array) -> Batch:
-    """`batch` with each row that is held out replaced by the last row before it that is not.
-
-    Rows before the first one that is not held out become the last one that is not. If all are
-    held out, which happens with probability share^B, the last row is repeated.
-    """
-    index = jnp.arange(len(held))
-    kept = jax.lax.cummax(jnp.where(held, -1, index))
-    kept = jnp.where(kept < 0, kept[-1], kept)
-    return jax.tree.map(lambda x: x[kept], batch)
-
-
-def only(batch: Batch, held: Array, count: int) -> tuple[Batch, Array]:
-    """The first `count` rows held out, and which of them are [count]; the others are row 0."""
-    index = jnp.flatnonzero(held, size=count, fill_value=0)
-    return jax.tree.map(lambda x: x[index], batch), jnp.arange(count) < held.sum()
-
-
-def _mix(h: Array) -> Array:
-    """MurmurHash3's finaliser of uint32 [...]."""
-    h = (h ^ (h >> 16)) * jnp.uint32(0x85EBCA6B)
-    h = (h ^ (h >> 13)) * jnp.uint32(0xC2B2AE35)
-    return h ^ (h >> 16)

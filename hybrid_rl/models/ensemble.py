@@ -4,8 +4,7 @@
 
 Members differ by their initial weights and by their batches, which are drawn independently from one
 replay memory. Deep ensembles (Lakshminarayanan et al. 2017), as in PETS and MBPO (Chua et al. 2018,
-Janner et al. 2019), without a bootstrapped data set for each member. With `elites`, states are
-drawn only from the members whose loss on held-out decisions is least, as in MBPO.
+Janner et al. 2019), without a bootstrapped data set for each member.
 """
 
 from typing import Any
@@ -14,7 +13,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.fields import Count, FieldError, part
+from hybrid_rl.fields import Count, part
 from hybrid_rl.protocols import Trainable
 from hybrid_rl.types import Spec
 
@@ -25,27 +24,16 @@ class Ensemble:
 
     model: Trainable
     members: Count = 5
-    elites: int | None = None  # members that `draw` uses; None: all
-
-    def __post_init__(self) -> None:
-        if self.elites is not None and self.elites not in range(1, self.members + 1):
-            words = f"must be a whole number from 1 to members={self.members}, or null for all"
-            raise FieldError(self, "elites", words)
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Initial parameters; weights have a first axis [members]. The key is consumed."""
         keys = jax.random.split(key, self.members)
         weights = jax.vmap(lambda k: self.model.init(k, spec)["weights"])(keys)
-        params = {**self.model.init(key, spec), "weights": weights}
-        return params if self.elites is None else {**params, "elites": jnp.arange(self.elites)}
+        return {**self.model.init(key, spec), "weights": weights}
 
     def observe(self, params: dict[str, Any], obs: Array, next_obs: Array) -> dict[str, Any]:
         """Parameters with statistics updated by observations [B, o] and their successors."""
         return self.model.observe(params, obs, next_obs)
-
-    def rank(self, params: dict[str, Any], losses: Array) -> dict[str, Any]:
-        """Parameters whose elites are the members with the least of `losses` [members]."""
-        return {**params, "elites": jnp.argsort(losses)[: self.elites]}
 
     def lift(self, params: dict[str, Any], obs: Array) -> Array:
         """The planning state of an observation [o]."""
@@ -85,12 +73,9 @@ class Ensemble:
     def draw(self, params: dict[str, Any], x: Array, u: Array, noise: Array, key: Array) -> Array:
         """Next states [B, n] for noise [B, n] ~ N(0, I), each of one member.
 
-        The states are divided equally among the elites, without them among the members; `key`
-        decides which share each one gets.
+        The states are divided equally among the members; `key` decides which share each one gets.
         """
-        count, weights = self.elites or self.members, params["weights"]
-        if self.elites is not None:
-            weights = jax.tree.map(lambda w: w[params["elites"]], weights)
+        count = self.members
         member_of = jax.random.permutation(key, count)  # of each share
         share_of = jnp.argmax(member_of[:, None] == jnp.arange(count)[None], 0)  # of each member
         missing = -len(x) % count
@@ -102,7 +87,7 @@ class Ensemble:
         n, rows = x.shape[1], jnp.concatenate([x, u, noise], axis=1)
         rows = jnp.pad(rows, ((0, missing), (0, 0))).reshape(count, -1, rows.shape[1])
         # States are permuted: they are fewer numbers than weights.
-        drawn = jax.vmap(one)(weights, _permuted(rows, share_of, member_of))
+        drawn = jax.vmap(one)(params["weights"], _permuted(rows, share_of, member_of))
         return _permuted(drawn, member_of, share_of).reshape(-1, n)[: len(x)]
 
     def loss(self, params: dict[str, Any], obs: Array, action: Array, next_obs: Array) -> Array:
@@ -110,14 +95,6 @@ class Ensemble:
         shares = [x.reshape(self.members, -1, x.shape[1]) for x in (obs, action, next_obs)]
         one = jax.vmap(lambda w, *share: self.model.loss({**params, "weights": w}, *share))
         return one(params["weights"], *shares).mean()
-
-    def losses(self, params: dict[str, Any], obs: Array, action: Array, next_obs: Array) -> Array:
-        """Loss [members, B] of each member on each of the transitions [B, ...]."""
-
-        def one(weights: Any) -> Array:
-            return self.model.losses({**params, "weights": weights}, obs, action, next_obs)[0]
-
-        return jax.vmap(one)(params["weights"])
 
 
 @jax.custom_vjp

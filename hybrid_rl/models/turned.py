@@ -41,11 +41,6 @@ class Turned:
         """Models in the ensemble."""
         return self.model.members
 
-    @property
-    def elites(self) -> int | None:
-        """Members that `draw` uses; None: all."""
-        return getattr(self.model, "elites", None)
-
     def init(self, key: Array, spec: Spec) -> Any:
         """Initial parameters. The key is consumed."""
         return self.model.init(key, spec)
@@ -62,10 +57,6 @@ class Turned:
             return self.world.turned(obs, -a), self.world.turned(after, -a)
 
         return self.model.observe(params, *jax.vmap(one)(obs, next_obs))
-
-    def rank(self, params: Any, losses: Array) -> Any:
-        """Parameters whose elites are the members with the least of `losses` [members]."""
-        return cast(Any, self.model).rank(params, losses)
 
     def step(self, params: Any, x: Array, u: Array) -> Array:
         """Mean of the next planning state [n]."""
@@ -91,10 +82,6 @@ class Turned:
     def loss(self, params: Any, obs: Array, action: Array, next_obs: Array) -> Array:
         """Mean loss [] of transitions [members * B, ...]."""
         return self.model.loss(params, *self._batch(obs, action, next_obs))
-
-    def losses(self, params: Any, obs: Array, action: Array, next_obs: Array) -> Array:
-        """Loss [members, B] of each member on each of the transitions [B, ...]."""
-        return self.model.losses(params, *self._batch(obs, action, next_obs))
 
     def _into(self, x: Array, u: Array) -> tuple[Array, Array, Array]:
         """The heading [] at x [n], and x and u [m] in its frame."""

@@ -228,9 +228,6 @@ class Trainable(Model, Protocol):
     def loss(self, params: PyTree, obs: Array, action: Array, next_obs: Array) -> Array:
         """Mean loss [] of transitions [members * B, ...]."""
 
-    def losses(self, params: PyTree, obs: Array, action: Array, next_obs: Array) -> Array:
-        """Loss [members, B] of each member on each of the transitions [B, ...]."""
-
     def draw(self, params: PyTree, x: Array, u: Array, noise: Array, key: Array) -> Array:
         """Samples of the next planning states [B, n], for noise [B, n] ~ N(0, I)."""
 

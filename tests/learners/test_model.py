@@ -10,8 +10,7 @@ import pytest
 from jax import Array
 from toys import begun, learned
 
-from hybrid_rl.learners.model import ModelLearner, flags
-from hybrid_rl.models.ensemble import Ensemble
+from hybrid_rl.learners.model import ModelLearner
 from hybrid_rl.models.gaussian import Gaussian
 from hybrid_rl.objectives.predicted_return import PredictedReturn
 from hybrid_rl.rewards.network import RewardNetwork
@@ -143,56 +142,6 @@ def test_weight_decay_shrinks_matrices_alone() -> None:
             step = np.abs(np.asarray(now - (1 - decay) * w)) / learner.learning_rate
             assert (np.minimum(step, np.abs(step - 1)) < 1e-2).all()  # 0 where no unit is active
             assert step.max() > 0.9
-
-
-HELD = ModelLearner(
-    Ensemble(Gaussian(hidden=(8,)), members=3, elites=2),
-    RewardNetwork(hidden=(8,), scale=True),
-    batch_size=128,
-    holdout=0.2,
-)
-INIT, UPDATE = jax.jit(lambda key: HELD.init(key, SPEC)), jax.jit(HELD.update)
-
-
-def test_held_out_decisions_are_not_learned_from() -> None:
-    """Other rewards and outcomes of them leave all but their loss unchanged, to the bit."""
-    batch, key = draw(jax.random.key(2), 3 * 128), jax.random.key(0)
-    held = flags(batch.obs, batch.action, 0.2)
-    assert 40 < int(held.sum()) < 120
-    far = batch._replace(
-        reward=batch.reward + 5 * held, next_obs=batch.next_obs + 9.0 * held[:, None]
-    )
-    first = INIT(key)
-    states, losses = [], []
-    for given in (batch, far, batch._replace(reward=batch.reward + 5 * ~held)):
-        state, metrics = UPDATE(first, Params(), given, key)
-        states.append([state.model["weights"], state.model["state"], state.model["change"]])
-        states[-1] += [state.reward, state.optimiser]
-        losses.append(float(metrics["model/held_out_loss"]))
-    same, other = (
-        [bool((a == b).all()) for a, b in zip(*map(jax.tree.leaves, (states[0], s)), strict=True)]
-        for s in states[1:]
-    )
-    assert all(same)
-    assert not all(other)
-    assert losses[1] > losses[0] + 1
-
-
-def test_held_out_losses_are_a_running_mean_that_ranks_the_members() -> None:
-    """Against the members' own losses on the decisions that the hash selects."""
-    loss = jax.jit(Gaussian(hidden=(8,)).loss)
-    state, want = INIT(jax.random.key(0)), np.zeros(3)
-    for n in range(1, 4):
-        batch = draw(jax.random.key(n), 3 * 128)
-        state, metrics = UPDATE(state, Params(), batch, jax.random.key(0))
-        held = np.flatnonzero(flags(batch.obs, batch.action, 0.2))[: round(0.2 * 384)]
-        rows = [x[held] for x in (batch.obs, batch.action, batch.next_obs)]
-        for i in range(3):
-            own = jax.tree.map(lambda w, i=i: w[i], state.model["weights"])
-            want[i] += (float(loss({**state.model, "weights": own}, *rows)) - want[i]) / n
-    np.testing.assert_allclose(state.held_out.mean, want, rtol=1e-4)
-    np.testing.assert_allclose(metrics["model/held_out_loss"], want.mean(), rtol=1e-4)
-    assert state.model["elites"].tolist() == np.argsort(want)[:2].tolist()
 
 
 def test_a_reward_of_the_next_state_is_learned() -> None:

@@ -35,16 +35,16 @@ def data():
 
 
 def test_a_turned_scene_has_the_turned_successor(data) -> None:
-    """For any weights: f(R x, R u) = R f(x, u), and the losses are the same."""
+    """For any weights: f(R x, R u) = R f(x, u), and the loss is the same."""
     params, x, u, after = data
     step = jax.jit(jax.vmap(MODEL.step, (None, 0, 0)))
     expected = around(np.asarray(step(params, x, u)))
     there, u_there = jnp.asarray(around(np.asarray(x))), u @ ROTATION.T
     np.testing.assert_allclose(step(params, there, u_there), expected, atol=2e-4)
     after_there = jnp.asarray(around(np.asarray(after)))
-    losses = jax.jit(MODEL.losses)
+    loss = jax.jit(MODEL.loss)
     np.testing.assert_allclose(
-        losses(params, there, u_there, after_there), losses(params, x, u, after), rtol=1e-3
+        loss(params, there, u_there, after_there), loss(params, x, u, after), rtol=1e-3
     )
 
 

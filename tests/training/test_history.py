@@ -100,7 +100,8 @@ def test_models_learn_the_newest_observation_and_shift_the_rest(predict):
     assert params["change"].mean.size == model.disagreement(params, x, u).size == 2
     each = [(x[None], u[None], after[None].at[0, i].add(1.0)) for i in (0, 1, 2, 7)]
     losses = [
-        model.losses(params, *rows).sum() for rows in [(x[None], u[None], after[None]), *each]
+        model.loss(params, *(jnp.tile(row, (2, 1)) for row in rows))
+        for rows in [(x[None], u[None], after[None]), *each]
     ]
     assert losses[0] not in losses[1:3]
     assert losses[3:] == [losses[0]] * 2  # what only shifts is not learned
