@@ -22,13 +22,11 @@ SECTIONS = {  # of the thesis: section -> its subsections
 LAST = {"2": 11, "3": 8, "4": 6, "5": 4, "6": 28, "7": 13}  # chapter of the thesis -> its last eq.
 
 
-def test_every_method_has_one_section_to_which_the_tables_lead():
+def test_every_method_has_one_section():
     """From which scripts/docs.py makes the method's page."""
     page = (ROOT / "docs" / "methods.md").read_text(encoding="utf-8")
     lines = re.findall(r"^### (.+)$", page, re.MULTILINE)
     assert sorted(name for line in lines for name in line.split(", ")) == options("algo")
-    tables = page.partition("\n## Settings")[0]
-    assert sorted({*re.findall(r"\[`(\w+)[^`]*`\]\(#", tables)}) == options("algo")
 
 
 def test_cited_sections_and_equations_of_the_thesis_exist():
