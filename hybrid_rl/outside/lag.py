@@ -82,7 +82,7 @@ def followed(
 
     def errors(lag: float) -> np.ndarray:
         u = acted(rows["sent"], rows["times"], rows["interval"], lag)
-        left = (after - model(obs, u.astype(np.float32))) / scale
+        left = (after - np.asarray(model(obs, u.astype(np.float32)))) / scale
         return np.log1p((left**2).sum(-1))  # of each row, an impact weighs little
 
     tried = np.arange((rows["sent"].shape[1] - 2) * COARSE + 1) / COARSE * period
