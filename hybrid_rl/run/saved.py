@@ -123,7 +123,7 @@ def load(folder: Path | str, key: str = "run") -> Trained:
     with run_folder.blame_config(folder):
         check(config)
         prepare(config)
-        trained = with_lag(of(build_run(config), folder), folder)
+        trained = of(build_run(config), folder)
     for note in trained.notes:
         say(note)
     return replace(trained, config=config, notes=())
@@ -144,9 +144,8 @@ def of(run: Run, folder: Path) -> Trained:
     name, agent, seeds = run.config.task, run.agent, run.seeds
     step, state, notes = restore(folder, run)
     params = jax.vmap(agent.params, axis_size=len(seeds))(state)  # state may be empty
-    return Trained(
-        name, agent.episode, run.controllers, params, seeds, step, (*notes,), agent=agent
-    )
+    made = agent.episode, run.controllers, params, seeds, step, (*notes,)
+    return with_lag(Trained(name, *made, agent=agent), folder)
 
 
 def build_run(config: DictConfig, part: str = "learners") -> Run:

@@ -1,5 +1,6 @@
 """Which actions acted, and how late, from times alone."""
 
+import jax.numpy as jnp
 import numpy as np
 import pytest
 from counting import Counting
@@ -67,7 +68,11 @@ def test_a_lag_that_changes_is_followed_by_a_model(late, before):
     names = ("obs", "next_obs", "sent", "times", "interval")
     newest = (each[-lags.FOLLOWED :] for each in moved(late, 0.0))
     rows = dict(zip(names, newest, strict=True))
-    found = lags.followed(lambda x, u: np.column_stack([x, u]) @ solved, rows, before)
+
+    def model(x, u):  # JAX's arrays, as those of a learner are
+        return jnp.asarray(np.column_stack([x, u]) @ solved)
+
+    found = lags.followed(model, rows, before)
     assert found / DT == pytest.approx(late, rel=0.1, abs=0.06)
     assert lags.followed(lambda x, u: x, rows, before) == before
 
