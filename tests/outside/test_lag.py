@@ -68,11 +68,7 @@ def test_a_lag_that_changes_is_followed_by_a_model(late, before):
     names = ("obs", "next_obs", "sent", "times", "interval")
     newest = (each[-lags.FOLLOWED :] for each in moved(late, 0.0))
     rows = dict(zip(names, newest, strict=True))
-
-    def model(x, u):  # JAX's arrays, as those of a learner are
-        return jnp.asarray(np.column_stack([x, u]) @ solved)
-
-    found = lags.followed(model, rows, before)
+    found = lags.followed(lambda x, u: jnp.asarray(np.c_[x, u] @ solved), rows, before)
     assert found / DT == pytest.approx(late, rel=0.1, abs=0.06)
     assert lags.followed(lambda x, u: x, rows, before) == before
 
@@ -81,10 +77,9 @@ def test_a_lag_that_changes_is_followed_by_a_model(late, before):
 def test_a_robots_controllers_act_at_the_lag_that_was_found_last(tmp_path, lag, decisions):
     """Rounded up to whole decisions of 4 ms; on time they are plain policies, as ONNX needs."""
     env, policy = Robot(make=Counting), PolicyController(TanhGaussian((8,)), Exact(Pendulum()))
-    folder = tmp_path / "robot"
-    folder.mkdir()
+    (tmp_path / "robot").mkdir()
     if lag is not None:
-        lags.publish(folder, lag)
+        lags.publish(tmp_path / "robot", lag)
     acting = {"policy": ahead(policy, 0.0, most=9)}
     trained = Trained("robot", Episode(env, steps=5), acting, Params(), (0,), 0, ())
     found = with_lag(trained, tmp_path).controllers["policy"]
