@@ -223,6 +223,7 @@ class Actor:
             if wrong:
                 line = OBSERVED.format(size, reprlib.repr(given))
                 raise WorldError(f"{self.env.name}: observe: {line}")
+            most += self._age or min(age, self.env.silence_s)
             if age <= most and np.isfinite(obs).all():  # a time that is NaN is no time
                 return obs, stamp
             words = f"{1e3 * age:.0f} ms old, and env.stale allows {1e3 * most:.0f} ms"
@@ -238,6 +239,7 @@ class Actor:
     def _silent(self, why: str) -> None:
         """End motion, and wait for `alone_s` until the robot answers; the learner shows why."""
         self.robot.stop()
+        self._age = 0.0
         line = f"{self.env.name}: {why}"
         report(self.folder, line + WAITING)
         self._since = min(self._since, time.monotonic())

@@ -16,11 +16,11 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import lifting
-from hybrid_rl.core.batching import where
 from hybrid_rl.fields import Count, NotNegative, part
 from hybrid_rl.networks.precision import using
 from hybrid_rl.protocols import Controller, Model
@@ -65,11 +65,12 @@ class AheadController:
 
     def predicted(self, params: Params, state: AheadState, x: Any) -> Any:
         """The planning state at which an action that is sent at x begins to act, in float32."""
+
+        def later(j: Array, x: Any) -> Any:
+            return self.model.step(params.model, x, _acting(state, self.most + 1 + j))
+
         with using("float32"):
-            for j in range(self.most):
-                after = self.model.step(params.model, x, _acting(state, self.most + 1 + j))
-                x = where(j < _pending(state), after, x)
-        return x
+            return jax.lax.fori_loop(0, _pending(state), later, x)
 
     def greedy(self) -> "AheadController":
         """The controller without exploration, at the same states."""
@@ -93,7 +94,7 @@ def _pending(state: AheadState) -> Array:
     return jnp.round(state.lag).astype(int)
 
 
-def _acting(state: AheadState, now: int) -> Array:
+def _acting(state: AheadState, now: int | Array) -> Array:
     """The action [m] that acts while `sent[now]` is on its way, perhaps a later one."""
     return state.sent[jnp.clip(now - _pending(state), 0, len(state.sent) - 1)]
 

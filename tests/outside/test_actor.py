@@ -163,6 +163,16 @@ def test_without_an_observation_the_action_is_safe(agent, tmp_path, fault):
     assert max(before) < min(after)
 
 
+def test_observations_that_are_always_old_are_acted_on(agent, tmp_path):
+    class Far(Counting):
+        def observe(self) -> tuple:
+            return super().observe()[0], time.monotonic() - 0.1  # 25 periods
+
+    actor, rows = moved(agent, tmp_path, Far, stale=10.0)
+    assert actor.counts.stale == 0
+    assert min(row["age"] for row in rows) >= 0.1
+
+
 def test_a_robot_that_falls_silent_is_stopped_and_awaited(agent, tmp_path, monkeypatch):
     monkeypatch.setattr(actors, "RETRY_S", 0.02)
 
