@@ -72,7 +72,7 @@ class Squares:
     def observe(self, params: Any, obs: Array, next_obs: Array) -> dict:
         return params
 
-    def loss(self, params: Any, obs: Array, action: Array, next_obs: Array) -> Array:
+    def loss(self, params: Any, obs: Array, action: Array, next_obs: Array, key: Array) -> Array:
         def one(obs: Array, action: Array, next_obs: Array) -> Array:
             ahead = self.step(params, self.lift(params, obs), action)
             return jnp.sum((ahead - self.lift(params, next_obs)) ** 2)

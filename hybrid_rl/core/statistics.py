@@ -59,11 +59,6 @@ def update(
     return now.replace(min_std=FLOOR * (now.magnitude if magnitude is None else magnitude))
 
 
-def leading(stats: Running, size: int) -> Running:
-    """The statistics of the first `size` entries."""
-    return jax.tree.map(lambda leaf: leaf[:size] if leaf.ndim else leaf, stats)
-
-
 def soft_target_update(old: Any, new: Any, tau: float) -> Any:
     """Target parameters: (1 - tau) old + tau new, with the statistics of `new`.
 

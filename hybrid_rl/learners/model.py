@@ -109,7 +109,7 @@ class ModelLearner:
         def loss(weights: tuple[Any, Any]) -> tuple[Array, tuple[Array, Array | None]]:
             f, r = weights
             tuned = {**model, "weights": f}
-            of_model = self.model.loss(tuned, batch.obs, batch.action, batch.next_obs)
+            of_model = self.model.loss(tuned, batch.obs, batch.action, batch.next_obs, key)
             if reward_loss is None:
                 return of_model, (of_model, None)
             of_reward = reward_loss(r)

@@ -90,11 +90,13 @@ class Ensemble:
         drawn = jax.vmap(one)(params["weights"], _permuted(rows, share_of, member_of))
         return _permuted(drawn, member_of, share_of).reshape(-1, n)[: len(x)]
 
-    def loss(self, params: dict[str, Any], obs: Array, action: Array, next_obs: Array) -> Array:
+    def loss(
+        self, params: dict[str, Any], obs: Array, action: Array, next_obs: Array, key: Array
+    ) -> Array:
         """Mean [] over the members of their losses, each on its own share of [members * B, ...]."""
         shares = [x.reshape(self.members, -1, x.shape[1]) for x in (obs, action, next_obs)]
         one = jax.vmap(lambda w, *share: self.model.loss({**params, "weights": w}, *share))
-        return one(params["weights"], *shares).mean()
+        return one(params["weights"], *shares, jax.random.split(key, self.members)).mean()
 
 
 @jax.custom_vjp

@@ -79,9 +79,9 @@ class Turned:
         """Standard deviation [n] of the members in the frame, in running std of the change."""
         return cast(Any, self.model).disagreement(params, *self._into(x, u)[1:])
 
-    def loss(self, params: Any, obs: Array, action: Array, next_obs: Array) -> Array:
-        """Mean loss [] of transitions [members * B, ...]."""
-        return self.model.loss(params, *self._batch(obs, action, next_obs))
+    def loss(self, params: Any, obs: Array, action: Array, next_obs: Array, key: Array) -> Array:
+        """Mean loss [] of transitions [members * B, ...]. The key is consumed."""
+        return self.model.loss(params, *self._batch(obs, action, next_obs), key)
 
     def _into(self, x: Array, u: Array) -> tuple[Array, Array, Array]:
         """The heading [] at x [n], and x and u [m] in its frame."""

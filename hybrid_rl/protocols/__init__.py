@@ -225,8 +225,8 @@ class Trainable(Model, Protocol):
     def observe(self, params: PyTree, obs: Array, next_obs: Array) -> PyTree:
         """Parameters with statistics updated by observations [B, o] and their successors."""
 
-    def loss(self, params: PyTree, obs: Array, action: Array, next_obs: Array) -> Array:
-        """Mean loss [] of transitions [members * B, ...]."""
+    def loss(self, params: PyTree, obs: Array, action: Array, next_obs: Array, key: Array) -> Array:
+        """Mean loss [] of transitions [members * B, ...]. The key is consumed."""
 
     def draw(self, params: PyTree, x: Array, u: Array, noise: Array, key: Array) -> Array:
         """Samples of the next planning states [B, n], for noise [B, n] ~ N(0, I)."""

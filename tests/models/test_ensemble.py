@@ -10,6 +10,7 @@ from hybrid_rl.models.gaussian import Gaussian
 from hybrid_rl.types import Spec
 
 SPEC = Spec(obs=3, act=2, dt=0.1)
+KEY = jax.random.key(4)
 ONE = Gaussian(hidden=(8,))
 MODEL = Ensemble(ONE, members=4)
 X, U, NOISE = jnp.array([0.3, -1.0, 2.0]), jnp.array([0.5, -0.2]), jnp.array([1.0, 0.0, -2.0])
@@ -48,9 +49,11 @@ def test_every_member_has_its_own_batch(params) -> None:
     )
     shares = [slice(2 * i, 2 * i + 2) for i in range(4)]
     loss, whole = jax.jit(ONE.loss), jax.jit(MODEL.loss)
-    losses = [loss(member(params, i), x[s], u[s], after[s]) for i, s in enumerate(shares)]
-    np.testing.assert_allclose(whole(params, x, u, after), np.mean(losses), rtol=1e-5)
-    gradient = jax.jit(jax.grad(lambda w, after: MODEL.loss({**params, "weights": w}, x, u, after)))
+    losses = [loss(member(params, i), x[s], u[s], after[s], KEY) for i, s in enumerate(shares)]
+    np.testing.assert_allclose(whole(params, x, u, after, KEY), np.mean(losses), rtol=1e-5)
+    gradient = jax.jit(
+        jax.grad(lambda w, after: MODEL.loss({**params, "weights": w}, x, u, after, KEY))
+    )
     moved = jax.tree.map(
         lambda a, b: np.abs(np.asarray(a - b)).reshape(4, -1).max(1) > 0,
         gradient(params["weights"], after.at[:2].add(1)),

@@ -14,6 +14,7 @@ from hybrid_rl.models.gaussian import Gaussian
 from hybrid_rl.types import Spec
 
 SPEC = Spec(obs=3, act=2, dt=0.1)
+KEY = jax.random.key(5)
 X, U = jnp.array([0.3, -1.0, 2.0]), jnp.array([0.5, -0.2])
 
 
@@ -61,28 +62,51 @@ def test_layer_norm_against_numpy(layer_norm: bool | str) -> None:
     np.testing.assert_allclose(model.change(params, X, U), want, rtol=1e-4, atol=1e-6)
 
 
-def test_the_state_is_predicted_in_its_own_units() -> None:
-    """With `predict: state` x' = m + s (f + std e), m and s of the states; against NumPy."""
-    model = Gaussian(hidden=(8,), predict="state")
+def test_the_change_is_predicted_in_its_own_units() -> None:
+    """x' = x + m + s (f + std e), m and s of the change; against NumPy."""
+    model = Gaussian(hidden=(8,))
     params = begun(model, SPEC)
     params["weights"]["log_std"] = jnp.array([-1.0, -2.0, 0.5])
     rng = np.random.default_rng(0)
     x, after = rng.normal([1, 2, 3], [1, 10, 0.1], (2, 50, 3)).astype(np.float32)
     u = rng.uniform(-1, 1, (50, 2)).astype(np.float32)
     params = model.observe(params, jnp.asarray(x), jnp.asarray(after))
-    m, s, std = x.mean(0), x.std(0), np.exp([-1.0, -2.0, 0.5])
+    m, s, std = (after - x).mean(0), (after - x).std(0), np.exp([-1.0, -2.0, 0.5])
     net = jax.tree.map(np.asarray, params["weights"]["net"]["params"])
-    of_net = np.maximum(np.concatenate([(x - m) / s, u], 1) @ net["Dense_0"]["kernel"], 0)
-    mean = m + s * (of_net @ net["Dense_1"]["kernel"])
+    inputs = np.concatenate([(x - x.mean(0)) / x.std(0), u], 1)
+    mean = x + m + s * (np.maximum(inputs @ net["Dense_0"]["kernel"], 0) @ net["Dense_1"]["kernel"])
     step = np.asarray(jax.vmap(model.step, (None, 0, 0))(params, x, u))
     np.testing.assert_allclose(step, mean, rtol=1e-4, atol=1e-4)
     noise = rng.normal(size=(50, 3)).astype(np.float32)
     drawn = model.draw(params, jnp.asarray(x), jnp.asarray(u), jnp.asarray(noise), None)
     np.testing.assert_allclose(drawn - step, s * std * noise, rtol=1e-2, atol=1e-3)
     density = np.log(2 * np.pi) / 2 + np.log(s * std) + ((after - mean) / (s * std)) ** 2 / 2
-    units = np.log((after - x).std(0))  # the likelihood is that of the normalised change
-    loss = model.loss(params, jnp.asarray(x), jnp.asarray(u), jnp.asarray(after))
-    np.testing.assert_allclose(loss, (density - units).mean(), rtol=1e-4)
+    loss = model.loss(params, jnp.asarray(x), jnp.asarray(u), jnp.asarray(after), KEY)
+    np.testing.assert_allclose(loss, (density - np.log(s)).mean(), rtol=1e-4)
+
+
+def test_it_learns_from_states_with_its_own_errors() -> None:
+    """The next state stays: the loss is that of other states, and its gradient, too."""
+    plain, noisy = Gaussian(hidden=(8,)), Gaussian(hidden=(8,), input_noise=0.5)
+    params = begun(plain, SPEC)
+    x, u, after = jax.random.normal(KEY, (20, 3)), jnp.zeros((20, 2)), jnp.ones((20, 3))
+    params = plain.observe(params, x, after)
+    params["weights"]["log_std"] = jnp.array([-1.0, -2.0, 0.5])
+    std = params["change"].scale * jnp.exp(params["weights"]["log_std"])
+    moved = x + 0.5 * std[None] * jax.random.normal(KEY, x.shape)
+
+    def change(model, x):
+        def loss(weights):
+            return model.loss({**params, "weights": weights}, x, u, after, KEY)
+
+        return jax.value_and_grad(loss)(params["weights"])
+
+    jax.tree.map(
+        lambda a, b: np.testing.assert_allclose(a, b, rtol=1e-4, atol=1e-6),
+        change(noisy, x),
+        change(plain, moved),
+    )
+    assert not np.allclose(change(noisy, x)[0], change(plain, x)[0], rtol=1e-3)
 
 
 def test_the_known_physics_of_the_how_to_are_those_of_the_pendulum() -> None:

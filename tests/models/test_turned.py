@@ -44,7 +44,9 @@ def test_a_turned_scene_has_the_turned_successor(data) -> None:
     after_there = jnp.asarray(around(np.asarray(after)))
     loss = jax.jit(MODEL.loss)
     np.testing.assert_allclose(
-        loss(params, there, u_there, after_there), loss(params, x, u, after), rtol=1e-3
+        loss(params, there, u_there, after_there, jax.random.key(3)),
+        loss(params, x, u, after, jax.random.key(3)),
+        rtol=1e-3,
     )
 
 
@@ -64,5 +66,6 @@ def test_the_frame_of_a_straight_block_behind_the_rod_is_the_world(data) -> None
         atol=1e-6,
     )
     np.testing.assert_allclose(
-        jax.jit(MODEL.loss)(params, x, u, after), jax.jit(INSIDE.loss)(params, x, u, after)
+        jax.jit(MODEL.loss)(params, x, u, after, key),
+        jax.jit(INSIDE.loss)(params, x, u, after, key),
     )

@@ -100,7 +100,7 @@ def test_models_learn_the_newest_observation_and_shift_the_rest(predict):
     assert params["change"].mean.size == model.disagreement(params, x, u).size == 2
     each = [(x[None], u[None], after[None].at[0, i].add(1.0)) for i in (0, 1, 2, 7)]
     losses = [
-        model.loss(params, *(jnp.tile(row, (2, 1)) for row in rows))
+        model.loss(params, *(jnp.tile(row, (2, 1)) for row in rows), KEY)
         for rows in [(x[None], u[None], after[None]), *each]
     ]
     assert losses[0] not in losses[1:3]
