@@ -50,7 +50,6 @@ USAGE = [  # overrides of train, after task=pendulum algo=hybrid_stochastic; wor
     ("task=cartpole physics=warp", "physics=warp: must have an NVIDIA GPU"),
     ("algo=sac replay.capacity=9", "replay.capacity=9: holds less than one batch, policy_learner."),
     ("run_dir=/dev/null/run", "run_dir=/dev/null/run: cannot be written to (Not a directory)"),
-    ("task=halfcheetah algo=kle3", "task=halfcheetah: kle3 needs an analytic environment; `python"),
     ("task=gymnasium algo=mppi", "mppi plans on the true dynamics, and this task st"),
     ("algo=nn_mppi planner=gradient", "policy=TanhGaussian: GradientController acts by it, and no"),
     ("algo=kle3 settings=light", "In 'settings/light': Could not override 'proposal'"),
@@ -59,14 +58,12 @@ USAGE = [  # overrides of train, after task=pendulum algo=hybrid_stochastic; wor
 ]
 OTHERS = [  # command and its arguments, words of the line
     ("evaluate", "run, policy: give one of them"),
-    ("evaluate {trained}", "unknown argument; give KEY=VALUE with run, policy, "),
     ("evaluate run={begun}", "holds no checkpoint yet"),
     ("evaluate policy=cheetah", "policy=cheetah: no such file; choose a file, or one of "),
     ("evaluate run={trained} mode=planner", "mode=planner: the run has full, policy"),
     ("evaluate run={trained} env.gravity=1", "got an unexpected keyword argument 'gravity'"),
     ("demonstrate task=hopper", "task=hopper: has no scripted expert; give expert=babble or run"),
     ("render run={trained} out=film.avi", "out=film.avi: must end in .mp4, .gif, .png"),
-    ("figures rums={trained}", "unknown argument; did you mean runs=VALUE?"),
     ("list config_dir=nowhere", "config_dir=nowhere: no such folder"),
 ]
 RESUMED = [  # overrides given with resume, words of the line

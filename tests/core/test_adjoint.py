@@ -61,16 +61,6 @@ def test_gradient_is_reverse_mode(objective) -> None:
 
 
 @pytest.mark.parametrize("objective", [staged, coupled])
-def test_costate_is_the_gradient_at_the_first_state(objective) -> None:
-    """rho_0 is dJ/dx_0 under the policy, by central differences."""
-    v = jnp.zeros((T, 1))
-    result = gradients(bent, feedback, objective, roll(bent, feedback, X, v))
-    for i, e in enumerate(1e-6 * np.eye(2)):
-        up, down = (objective(roll(bent, feedback, X + s * e, v)) for s in (1, -1))
-        assert float(result.costate[0, i]) == pytest.approx(float(up - down) / 2e-6, rel=1e-6)
-
-
-@pytest.mark.parametrize("objective", [staged, coupled])
 @pytest.mark.parametrize("other", [-0.7, 0.2, 1.0])
 def test_mode_insertion_gradient_is_the_derivative_of_a_short_switch(objective, other) -> None:
     """dJ/ds at s = 0, where the other action acts for a share s of the first decision."""

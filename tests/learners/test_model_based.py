@@ -1,4 +1,4 @@
-"""The soft return over several decisions, against a loop in NumPy and the adjoint core."""
+"""The soft return over several decisions, against a loop in NumPy."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -11,12 +11,12 @@ import pytest
 from jax import Array
 from toys import begun, learned
 
-from hybrid_rl.core import adjoint, returns
+from hybrid_rl.core import returns
 from hybrid_rl.critics.ensemble_q import EnsembleQ
 from hybrid_rl.learners.model_based import ModelBased, ModelBasedState
 from hybrid_rl.learners.sac import SAC
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
-from hybrid_rl.types import Batch, Imagined, Params, Path, Spec
+from hybrid_rl.types import Batch, Imagined, Params, Spec
 
 A = np.array([[0.9, 0.2], [-0.1, 0.8]], np.float32)
 B = np.array([[0.1], [0.7]], np.float32)
@@ -27,10 +27,8 @@ DISCOUNT, ALPHA = 0.9, 0.2
 class Line:
     """Linear dynamics and policy, quadratic reward and critic."""
 
-    noise: float = 0.1
-
     def draw(self, params: Any, x: Array, u: Array, noise: Array, key: Array) -> Array:
-        return x @ A.T + u @ B.T + self.noise * noise
+        return x @ A.T + u @ B.T + 0.1 * noise
 
     def outcome(self, params: Any, x: Array, u: Array, after: Array) -> tuple[Array, Array]:
         """Reward, and a chance to end that grows with x[0]."""
@@ -69,13 +67,13 @@ def looped(gain: np.ndarray, steps: int) -> np.ndarray:
     raise AssertionError
 
 
-@partial(jax.jit, static_argnums=(1, 3))
-def returned(gain: Array, steps: int, alpha: float = ALPHA, part: Any = PART) -> Array:
+@partial(jax.jit, static_argnums=1)
+def returned(gain: Array, steps: int) -> Array:
     """R [4] of the part."""
-    ahead = ModelBased(part, part, part, part, steps=steps)
+    ahead = ModelBased(PART, PART, PART, PART, steps=steps)
     paths = ahead.imagine(PARAMS._replace(policy=gain), X, 1, KEY)
-    last = part.value(None, paths.x[-1], paths.u[-1])
-    return returns.soft(paths, jnp.float32(alpha), DISCOUNT, last)[0]
+    last = PART.value(None, paths.x[-1], paths.u[-1])
+    return returns.soft(paths, jnp.float32(ALPHA), DISCOUNT, last)[0]
 
 
 @pytest.mark.parametrize("steps", [0, 1, 3])
@@ -88,38 +86,6 @@ def test_the_return_and_its_slope_are_those_of_a_loop(steps: int) -> None:
         h = np.eye(1, 2, i) * 1e-6
         difference = looped(gain + h, steps).sum() - looped(gain - h, steps).sum()
         assert float(slope[0, i]) == pytest.approx(difference / 2e-6, rel=1e-4)
-
-
-def test_the_costate_gives_the_same_gradient() -> None:
-    """dR/dK = sum_t g_t x_t' of the adjoint core, without noise, temperature and ends."""
-
-    @dataclass(frozen=True)
-    class Plain(Line):
-        def outcome(self, params: Any, x: Array, u: Array, after: Array) -> tuple[Array, Array]:
-            return super().outcome(params, x, u, after)[0], -jnp.inf
-
-        def sample(self, params: Any, x: Array, noise: Array) -> tuple[Array, Array]:
-            return x @ params.T, jnp.zeros(x.shape[:-1])
-
-    steps, part = 3, Plain(noise=0.0)
-    slope = jax.jit(jax.grad(lambda k: returned(k, steps, 0.0, part).sum()))(GAIN)
-    weights = DISCOUNT ** jnp.arange(steps + 1)
-
-    def value(path: Path) -> Array:
-        x, u = path.x[:-1], path.u
-        rewards = -jnp.sum(x**2, -1) - 0.1 * jnp.sum(u**2, -1)
-        last = part.value(None, x[-1], u[-1])
-        return weights[:-1] @ rewards[:-1] + weights[-1] * last
-
-    def step(x: Array, u: Array) -> Array:
-        return A @ x + B @ u
-
-    def gradient(x: Array) -> Array:
-        path = adjoint.roll(step, lambda x: GAIN @ x, x, jnp.zeros((steps + 1, 1)))
-        found = adjoint.adjoint(step, lambda x: GAIN @ x, value, path)
-        return found.gradient.T @ path.x[:-1]
-
-    np.testing.assert_allclose(slope, jax.vmap(gradient)(X).sum(0), rtol=1e-4)
 
 
 def test_how_likely_a_decision_is_reached() -> None:
