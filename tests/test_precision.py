@@ -82,7 +82,6 @@ def test_the_numbers_of_a_sweep_leave_the_products_as_they_are():
     "algo", ["koopman_active", "koopman_embedding", "gp_active", "kle3", "flash_sac"]
 )
 def test_what_is_no_multilayer_perceptron_stays_in_float32(algo):
-    """Operators, Gaussian processes and exploration; residual networks."""
     agent = build(load(algo, "task=pendulum", f"algo={algo}")).agent
     with precision.using("bf16"):
         state = jax.eval_shape(agent.init, jax.random.key(0))

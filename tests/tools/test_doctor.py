@@ -201,11 +201,12 @@ def test_a_reward_that_is_constant_or_hides_is_noticed():
     assert "subtract" in task.reward(given(offset))
 
 
-def test_decisions_that_are_too_rare_are_noticed_and_fast_velocities_alone_are_no_fault():
+def test_rare_decisions_are_noticed_and_fast_velocities_beside_slow_positions_are_no_fault():
     x, action = oscillator()
     fast = np.random.default_rng(1).normal(size=(*x.shape[:2], 3))
     assert observed.rare(evidence(np.concatenate((x, fast), -1), action)) is None
-    assert "decide more often" in observed.rare(evidence(*oscillator(dt=1.5)))
+    for rare in ((fast, action), oscillator(dt=1.5)):
+        assert "decide more often" in observed.rare(evidence(*rare))
 
 
 def test_a_policy_that_is_paid_after_the_limit_is_cut():
