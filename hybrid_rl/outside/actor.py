@@ -211,7 +211,6 @@ class Actor:
     def _observed(self) -> tuple[np.ndarray | None, float]:
         """(observation [o], its time); None if there is none to act on."""
         size, most = self.env.kind.obs, self.env.stale * self.spec.dt
-        given = None
         with suppress(OSError):  # a robot that does not answer
             given = self._call("observe", self.robot.observe)
             try:
@@ -223,11 +222,11 @@ class Actor:
             if wrong:
                 line = OBSERVED.format(size, reprlib.repr(given))
                 raise WorldError(f"{self.env.name}: observe: {line}")
-            most += self._age or min(age, self.env.silence_s)
-            if age <= most and np.isfinite(obs).all():  # a time that is NaN is no time
+            beyond = age - (self._age or min(age, self.env.silence_s))
+            if beyond <= most and np.isfinite(obs).all():  # a time that is NaN is no time
                 return obs, stamp
-            words = f"{1e3 * age:.0f} ms old, and env.stale allows {1e3 * most:.0f} ms"
-            self._why = f"; the newest was {words}"
+            words = f"{1e3 * age:.0f} ms old, {1e3 * beyond:.0f} more than usual"
+            self._why = f"; the newest was {words}, and env.stale allows {1e3 * most:.0f}"
         self.counts.stale += 1
         return None, 0.0
 
@@ -239,10 +238,9 @@ class Actor:
     def _silent(self, why: str) -> None:
         """End motion, and wait for `alone_s` until the robot answers; the learner shows why."""
         self.robot.stop()
-        self._age = 0.0
         line = f"{self.env.name}: {why}"
         report(self.folder, line + WAITING)
-        self._since = min(self._since, time.monotonic())
+        self._since, self._age = min(self._since, time.monotonic()), 0.0
         while not self._over():
             if time.monotonic() - self._since > self.env.alone_s:
                 raise TimeoutError(f"{line}, nothing else for {self.env.alone_s:g} s")

@@ -70,7 +70,7 @@ class AheadController:
             return self.model.step(params.model, x, _acting(state, self.most + 1 + j))
 
         with using("float32"):
-            return jax.lax.fori_loop(0, _pending(state), later, x)
+            return jax.lax.fori_loop(0, jnp.round(state.lag).astype(int), later, x)
 
     def greedy(self) -> "AheadController":
         """The controller without exploration, at the same states."""
@@ -89,14 +89,10 @@ def acted(state: Any, u: Array) -> Array:
     return _acting(state, len(state.sent) - 1) if isinstance(state, AheadState) else u
 
 
-def _pending(state: AheadState) -> Array:
-    """k [], the actions that are pending."""
-    return jnp.round(state.lag).astype(int)
-
-
 def _acting(state: AheadState, now: int | Array) -> Array:
     """The action [m] that acts while `sent[now]` is on its way, perhaps a later one."""
-    return state.sent[jnp.clip(now - _pending(state), 0, len(state.sent) - 1)]
+    acting = now - jnp.round(state.lag).astype(int)
+    return state.sent[jnp.clip(acting, 0, len(state.sent) - 1)]
 
 
 def ahead(controller: Controller, lag: float, most: int = 0) -> Controller:
