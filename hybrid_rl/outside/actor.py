@@ -210,7 +210,7 @@ class Actor:
 
     def _observed(self) -> tuple[np.ndarray | None, float]:
         """(observation [o], its time); None if there is none to act on."""
-        size, most = self.env.kind.obs, self.env.stale * self.spec.dt
+        size, most, age = self.env.kind.obs, self.env.stale * self.spec.dt, math.nan
         with suppress(OSError):  # a robot that does not answer
             given = self._call("observe", self.robot.observe)
             try:
