@@ -50,7 +50,7 @@ class Robot(Made):
 
     lag: NotNegative | None = None  # [s] from sending an action until it acts; None: is estimated
     rate: Positive | None = None  # greatest change of an action from one decision to the next, of 2
-    stale: Positive = 2.0  # periods beyond its usual age at which an observation is too old
+    stale: Positive = 2.0  # periods by which an observation may be older than usual
     silence_s: Positive = 1.0  # [s] without an observation, or in a method, until motion is ended
     alone_s: Positive = 30.0  # [s] that the robot goes on without its learner
     handover_s: Positive = 0.2  # [s] between two sets of parameters that the robot gets

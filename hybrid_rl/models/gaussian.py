@@ -8,7 +8,7 @@ body's motion does not depend on its position, which flights near one position c
 With `input_noise` c it learns from x + c s N(0, I), though always to predict the same x'. So what
 it predicts from its own errors returns to the states that exist, where an entry follows from others
 (a sine and a cosine), instead of drifting away (Sanchez-Gonzalez et al. 2020, "Learning to simulate
-complex physics with graph networks"). As s grows with it, to s / sqrt(1 - c^2), c is below 1.
+complex physics with graph networks"). Noise that x does not reveal enlarges s: c is well below 1.
 """
 
 from typing import Annotated, Any, ClassVar

@@ -65,7 +65,5 @@ def test_the_frame_of_a_straight_block_behind_the_rod_is_the_world(data) -> None
         jax.jit(INSIDE.draw)(params, x, u, noise, key),
         atol=1e-6,
     )
-    np.testing.assert_allclose(
-        jax.jit(MODEL.loss)(params, x, u, after, key),
-        jax.jit(INSIDE.loss)(params, x, u, after, key),
-    )
+    given = params, x, u, after, key
+    np.testing.assert_allclose(jax.jit(MODEL.loss)(*given), jax.jit(INSIDE.loss)(*given))

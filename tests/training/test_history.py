@@ -86,9 +86,9 @@ def test_controllers_and_the_memory_have_the_history_of_each_episode():
     close(Replay(100).newest(state.memory, agent.spec, K).obs[1], want[11])
 
 
-@pytest.mark.parametrize("noise", [0.0, 0.5])
-def test_models_learn_the_newest_observation_and_shift_the_rest(noise):
-    model = Ensemble(Gaussian((8,), state_noise=True, input_noise=noise), 2)
+@pytest.mark.parametrize("input_noise", [0.0, 0.5])
+def test_models_learn_the_newest_observation_and_shift_the_rest(input_noise):
+    model = Ensemble(Gaussian((8,), state_noise=True, input_noise=input_noise), 2)
     spec = history.seen(Spec(obs=2, act=1, dt=0.1), K)
     params, rng = begun(model, spec), np.random.default_rng(0)
     x, u, noise = (jnp.asarray(rng.normal(size=n), jnp.float32) for n in (8, 1, 8))
