@@ -21,11 +21,12 @@ ARGUMENTS = (
     Argument("out", "late.png", "the picture"),
 )
 TITLES = {"halfcheetah": "half-cheetah, simulated", "hopper": "hopper, simulated"}
-EPISODE_MIN = 1000 / 20 / 60  # of a half-cheetah in real time
-REAL = {  # run in real time -> its name, colour
-    "halfcheetah, on time": ("not late", "#000000"),
-    "halfcheetah, late, held back": ("20 ms each way", "#009E73"),
-    "halfcheetah, late": ("20 ms, by a straight line", "#56B4E9"),
+EPISODE = 1000  # decisions of a half-cheetah in real time
+REAL = {  # run in real time -> its name, colour, decisions per second
+    "halfcheetah, two cores each": ("20 Hz", "#000000", 20),
+    "halfcheetah, late, two cores each": ("20 Hz, 20 ms each way", "#009E73", 20),
+    "halfcheetah, 30 Hz": ("30 Hz", "#666666", 30),
+    "halfcheetah, 30 Hz, 133 ms late": ("30 Hz, 66 ms each way", "#D55E00", 30),
 }
 SHOWN = {  # what ends the name of an arm -> its name, colour, mark
     "": ("whole decisions, held back", "#000000", "o-"),
@@ -65,9 +66,9 @@ def draw(found: dict[str, Any]) -> Figure:
 
 def in_real_time(axes: Axes, runs: dict[str, Any]) -> None:
     """Training returns of half-cheetahs over the minutes of their lives."""
-    for run, (name, ink) in REAL.items():
+    for run, (name, ink, rate) in REAL.items():
         returns = np.array(runs[run]["training"])
-        minutes = EPISODE_MIN * np.arange(1, 1 + returns.shape[1])
+        minutes = EPISODE / rate / 60 * np.arange(1, 1 + returns.shape[1])
         axes.plot(minutes, iqm(returns), color=ink, label=name)
         axes.fill_between(minutes, *band(returns), color=ink, alpha=0.2, lw=0)
     axes.set(title="half-cheetah in real time", xlabel="minutes", ylabel="training return")
