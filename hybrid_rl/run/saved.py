@@ -33,7 +33,7 @@ from hybrid_rl.outside.acting import TrainedPolicy
 from hybrid_rl.outside.lag import known_lag
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run import folder as run_folder
-from hybrid_rl.run.checkpoints.store import read_part
+from hybrid_rl.run.checkpoints.store import read_parts
 from hybrid_rl.run.logs.progress import say
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.settings import build as configuration
@@ -166,7 +166,8 @@ def restore(folder: Path, run: Run, part: str = "learners") -> tuple[int, AgentS
 
     part: the field of the state that is read; the others are None.
     """
-    return read_part(folder / "checkpoints", run.agent, run.seeds, part)
+    step, state, _, notes = read_parts(folder / "checkpoints", run.agent, run.seeds, [part])
+    return step, state, notes
 
 
 def names() -> list[str]:

@@ -43,7 +43,6 @@ class Session:
     began: float = field(default_factory=monotonic)
     stop: int | None = None  # the signal that asked for an end; 0: the program did
     saved: tuple[int, bool] | None = None  # step and `unevaluated` of the newest checkpoint
-    gathered: records.Metrics = field(default_factory=dict)  # since the last row of means
     recent: Speed = field(default_factory=Speed)  # since then
     pace: Pace = field(default_factory=Pace)
     program: Any = None  # compiled
@@ -87,7 +86,7 @@ class Session:
 
     def resume(self) -> None:
         """Start from the newest sound checkpoint."""
-        self.state, self.gathered, self.record, notes = self.shelf.restore()
+        self.state, self.record, notes = self.shelf.restore()
         self.progress.update(self.step, {}, say=False)
         if not self.schedule.checkpoint_replay:
             self.loop.agent = replace(self.loop.agent, first_update=self.step)
@@ -173,11 +172,11 @@ class Session:
         rows = sorted(episodes + ended, key=lambda row: (row["step"], row["learner"]))
         self.shelf.write(rows, self.wall_s)
         self._continue(bool(infinite))
-        self.gathered = records.appended(self.gathered, metrics)
+        self.record.sums = records.added(self.record.sums, metrics)
         if self.schedule.row_due(self.step, worlds):
             learners = len(self.loop.seeds)
-            means = records.means(self.gathered, learners, self.step, self.record.ends)
-            self.gathered = {}
+            means = records.means(self.record.sums, learners, self.step, self.record.ends)
+            self.record.sums = {}
             perf = {"perf/compile_s": self.compile_s} | self._speed(len(self.shelf.logs))
             self.shelf.write([row | perf for row in means], self.wall_s)
 
@@ -248,7 +247,7 @@ class Session:
         self._continue(True)
         now = replace(self.record, wall_s=self.wall_s)
         with self.progress.doing("saving"):
-            self.shelf.save(self.state, self.gathered, now)
+            self.shelf.save(self.state, now)
         self.saved = self.step, self.record.unevaluated
 
     def _show(self, scalars: Mapping[str, float], say: bool | None) -> None:
