@@ -152,7 +152,7 @@ def train(
         DivergenceError: if every learner reached NaN or infinity.
         CheckpointError: if a checkpoint could not be written or read.
     """
-    output = Output(on_row, progress)
+    output = Output(on_row or (lambda row: None), progress)
     if isinstance(method, Agent):
         values: dict[str, Any] = {**settings}
         run = run_of(method, **values)

@@ -197,19 +197,19 @@ class HostEvaluator:
         self._acting.compile(params)
 
     def __call__(
-        self, params: Params, keys: Array, cut: Callable[[], bool] = lambda: False
+        self, params: Params, keys: Array, cut: Callable[[int], Any] = lambda made: False
     ) -> dict[str, np.ndarray] | None:
-        """The `return` [S, N] of each episode, and `success` if infos say; None once `cut`."""
+        """The `return` [S, N] of each episode, and `success` if infos say; None once cut(made)."""
         seeds = [seed_of(*map(int, row)) for row in jax.random.key_data(keys).reshape(-1, 2)]
         copies = copies_of(self.episode, seeds)
         self._acting.begin(keys)
         obs, done, returns = copies.reset(), np.zeros(len(seeds), bool), np.zeros(len(seeds))
-        flagged, success = False, np.zeros(len(seeds))
+        flagged, success, made = False, np.zeros(len(seeds)), 0
         while not done.all():
-            if cut():
+            if cut(made):
                 copies.close()
                 return None
-            u = self._acting(params, obs.reshape(*keys.shape, -1))
+            u, made = self._acting(params, obs.reshape(*keys.shape, -1)), made + 1
             got = copies.step(u.reshape(len(seeds), -1))
             returns += np.where(done, 0, got.reward)
             if copies.success is not None:

@@ -114,9 +114,10 @@ class Session:
 
     def ask(self, number: int) -> None:
         """End the run after the current call, with a checkpoint; number: of the signal, or 0."""
+        if self.stop is None:
+            self.progress.note("stopping, with a checkpoint ...")
         self.stop = self.stop or number
         self.loop.cut_short()
-        self.progress.note("stopping, with a checkpoint ...")
 
     def run(self) -> None:
         """Advance to the end, or until `ask` was called; the last state is always saved."""
