@@ -113,25 +113,26 @@ ROBOT = (  # of commands that show a trained robot, or a scripted expert
 ROBOT_CHANGES = {**CHANGES, "expert": "with task=T: a key of its expert"}
 
 
+SHOWN = ("run", "policy", "task")  # of ROBOT, one of which is given
+
+
 def robot(given: Mapping[str, Any], changes: Mapping[str, str]) -> str:
     """The run, policy or task that values of ROBOT name."""
-    named = [given[name] for name in ("run", "policy", "task") if given[name]]
-    if len(named) != 1:
-        raise UsageError(
-            "run, policy, task: give one of them; run=DIR is a folder that training wrote, "
-            "policy=NAME a trained policy, task=T shows the task's scripted expert"
-        )
+    named = next(given[name] for name in SHOWN if given[name])
     others = [*(argument.name for argument in GOAL), "mode"] if given["task"] else ["expert"]
     for argument in ROBOT:
         name, chosen = argument.name, given[argument.name] != argument.default
         if name in others and (chosen or any(key.startswith(f"{name}.") for key in changes)):
             fits = "run=DIR or policy=NAME" if given["task"] else "task=T"
-            raise UsageError(f"{name}: is not for {named[0]}; give it with {fits}")
-    return named[0]
+            raise UsageError(f"{name}: is not for {named}; give it with {fits}")
+    return named
 
 
 def read(
-    doc: str | None, known: Sequence[Argument], groups: Mapping[str, str] | None = None
+    doc: str | None,
+    known: Sequence[Argument],
+    groups: Mapping[str, str] | None = None,
+    one: Sequence[str] = (),
 ) -> tuple[dict[str, Any], dict[str, str]]:
     """The values of all `known` arguments, and the `group.key=value` of the user.
 
@@ -141,6 +142,7 @@ def read(
         doc: the docstring of its module.
         known: its arguments.
         groups: groups of the configuration whose keys it accepts -> their description in --help.
+        one: the arguments of which the user gives exactly one.
     """
     groups = groups or {}
     line = sys.argv[1:]
@@ -169,6 +171,9 @@ def read(
     for argument in known:
         if argument.needed and not values[argument.name]:
             raise UsageError(f"{argument.name}: not given; give {argument.needed}")
+    if one and sum(bool(values[name]) for name in one) != 1:
+        about = "; ".join(f"{name}=, {named[name].about}" for name in one)
+        raise UsageError(f"{', '.join(one)}: give one of them: {about}")
     return values, changes
 
 
