@@ -48,11 +48,9 @@ ACCELERATED = ("auto", "mjx", "warp")  # physics that may need a GPU to build a 
 
 def jobs_of(parsed: Sequence[Override]) -> list[list[str]]:
     """The overrides of each job: every combination of the values."""
-    for each in parsed:
-        if each.is_interval_sweep():
-            raise UsageError(f"{each.input_line}: a sweep has no ranges; list values")
-        if each.is_sweep_override() and not [*each.sweep_string_iterator()]:
-            raise UsageError(f"{each.input_line}: has no values")
+    for each in (each for each in parsed if each.is_sweep_override()):
+        if each.is_interval_sweep() or not [*each.sweep_string_iterator()]:
+            raise UsageError(f"{each.input_line}: gives no values; list them")
     return BasicSweeper.split_arguments([*parsed], None)[0]
 
 
