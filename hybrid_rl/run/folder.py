@@ -25,7 +25,7 @@ from hybrid_rl.files.lock import lock
 from hybrid_rl.files.reading import json_file, yaml_file
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.settings.build import CONF
-from hybrid_rl.settings.values import COUNTS, SECTIONS, check_words
+from hybrid_rl.settings.values import SECTIONS, check
 from hybrid_rl.settings.words import quoted
 from hybrid_rl.version import __version__
 
@@ -127,11 +127,8 @@ def read(folder: Path, key: str) -> DictConfig:
             f"{key}={folder}: trained from parts in Python, which its config.yaml cannot build; "
             "hybrid_rl.train(agent, run_dir=DIR, total_steps=N) reads it back and continues it"
         )
-    missing = [name for name in ("task", "algo", "seed", *SECTIONS, *COUNTS) if name not in config]
     with blame_config(folder):
-        if missing:
-            raise UsageError(f"lacks {', '.join(missing)}")
-        check_words(config)
+        check(config)
     return config
 
 

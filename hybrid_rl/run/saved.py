@@ -38,7 +38,7 @@ from hybrid_rl.run.logs.progress import say
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings.build import Run
-from hybrid_rl.settings.values import check
+from hybrid_rl.settings.values import one_of
 from hybrid_rl.training.agent import Agent, AgentState
 from hybrid_rl.training.ahead import ahead
 from hybrid_rl.training.contract import needs_world
@@ -100,10 +100,8 @@ class Trained:
                 than observations.
         """
         seed = self.seeds[0] if seed is None else seed
-        if seed not in self.seeds:
-            raise UsageError(f"seed={seed}: the run has {', '.join(map(str, self.seeds))}")
-        if mode not in self.controllers:
-            raise UsageError(f"mode={mode}: the run has {', '.join(self.controllers)}")
+        one_of("seed", seed, self.seeds)
+        one_of("mode", mode, self.controllers)
         if not world and needs_world(self.controllers[mode]):
             raise UsageError(
                 f"mode={mode}: plans from the state of the world (model=world), which observations "
@@ -121,7 +119,6 @@ def load(folder: Path | str, key: str = "run") -> Trained:
     folder = Path(folder)
     config = run_folder.read_trained(folder, key)
     with run_folder.blame_config(folder):
-        check(config)
         prepare(config)
         trained = of(build_run(config), folder)
     for note in trained.notes:
@@ -177,11 +174,6 @@ def names() -> list[str]:
 
 def load_named(given: Mapping[str, Any]) -> Trained:
     """The run or policy that the arguments run=DIR or policy=NAME name."""
-    if bool(given["run"]) == bool(given["policy"]):
-        raise UsageError(
-            "run, policy: give one of them; run=DIR is a folder that training wrote, "
-            f"policy=NAME one of {', '.join(names())} or a file"
-        )
     return read(given["policy"]) if given["policy"] else load(Path(given["run"]))
 
 
