@@ -23,6 +23,18 @@ def text(name: str, given: str) -> str:
     return given
 
 
+def _kind(parse: Callable[[str], Any], holds: Callable[[Any], bool], must: str) -> Kind:
+    """The values that `parse` makes of a text, where they hold; must: words of the error."""
+
+    def kind(name: str, given: str) -> Any:
+        with suppress(ValueError):
+            if holds(value := parse(given)):
+                return value
+        raise UsageError(f"{name}={given}: {must}")
+
+    return kind
+
+
 def flag(name: str, given: str) -> bool:
     """true or false."""
     return one_of("true", "false")(name, given.lower()) == "true"
@@ -30,27 +42,15 @@ def flag(name: str, given: str) -> bool:
 
 def whole(least: int = 1, even: bool = False) -> Kind:
     """A whole number."""
-
-    def kind(name: str, given: str) -> int:
-        if given.isdecimal() and int(given) >= least and not (even and int(given) % 2):
-            return int(given)
-        called = "an even number" if even else "a whole number"
-        raise UsageError(f"{name}={given}: must be {called}, {least + even} or more")
-
-    return kind
+    called = "an even number" if even else "a whole number"
+    must = f"must be {called}, {least + even} or more"
+    return _kind(int, lambda n: n >= least and not (even and n % 2), must)
 
 
 def number(least: float = -math.inf, what: str = "") -> Kind:
     """A finite number; what: words that follow "a number" in the message."""
     what = what or (f", {least:g} or more" if least > -math.inf else "")
-
-    def kind(name: str, given: str) -> float:
-        with suppress(ValueError):
-            if math.isfinite(float(given)) and float(given) >= least:
-                return float(given)
-        raise UsageError(f"{name}={given}: must be a number{what}")
-
-    return kind
+    return _kind(float, lambda x: math.isfinite(x) and x >= least, f"must be a number{what}")
 
 
 def numbers(each: Kind | None = None) -> Kind:
@@ -61,13 +61,7 @@ def numbers(each: Kind | None = None) -> Kind:
 
 def one_of(*known: str) -> Kind:
     """One of the names."""
-
-    def kind(name: str, given: str) -> str:
-        if given not in known:
-            raise UsageError(f"{name}={given}: choose one of {', '.join(filter(None, known))}")
-        return given
-
-    return kind
+    return _kind(str, known.__contains__, f"choose one of {', '.join(filter(None, known))}")
 
 
 def several(*known: str) -> Kind:
