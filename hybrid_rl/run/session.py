@@ -217,16 +217,19 @@ class Session:
 
     def _end(self, failures: Mapping[int, tuple[int, str]]) -> list[Row]:
         """A row for each learner that diverged just now; failures: learner -> (step, quantity)."""
-        new = new_ends(self.loop, self.record.ends, failures)
-        self.record.ends |= new
-        for s, end in new.items():
-            self.record.final_eval[s] = None
-            if self.left:  # else the error names it
-                self.progress.note(f"{_words(end)}; it ends here, the others continue")
-        return [
-            {"step": end["step"], "learner": s, "diverged": end["quantity"]}
-            for s, end in new.items()
-        ]
+        loop, rows = self.loop, []
+        for s, (step, quantity) in sorted(failures.items()):
+            if s in self.record.ends:
+                continue
+            end: End = {"seed": loop.seeds[s], "step": step, "quantity": quantity}
+            if numbers := loop.axis.names[s * loop.axis.count // len(loop.seeds)]:
+                end["of"] = numbers  # where there are others
+            self.record.ends[s], self.record.final_eval[s] = end, None
+            rows.append({"step": step, "learner": s, "diverged": quantity})
+        for row in rows if self.left else ():  # else the error names it
+            line = _words(self.record.ends[row["learner"]])
+            self.progress.note(f"{line}; it ends here, the others continue")
+        return rows
 
     def _continue(self, repair: bool) -> None:
         """Raise DivergenceError if no learner is left; `repair` those that have ended.
@@ -267,22 +270,6 @@ class Session:
             known = values and s not in self.record.ends
             means.append(float(np.mean(values)) if known else None)
         return means
-
-
-def new_ends(
-    loop: Loop, known: Mapping[int, End], failures: Mapping[int, tuple[int, str]]
-) -> dict[int, End]:
-    """The ends, by the learner's number, that are not yet `known`.
-
-    failures: learner -> (step, quantity).
-    """
-    new: dict[int, End] = {}
-    for s, (step, quantity) in sorted(failures.items()):
-        if s not in known:
-            new[s] = {"seed": loop.seeds[s], "step": step, "quantity": quantity}
-            if numbers := loop.axis.names[s * loop.axis.count // len(loop.seeds)]:
-                new[s]["of"] = numbers  # where there are others
-    return new
 
 
 def unsound(learners: Any, step: int) -> dict[int, tuple[int, str]]:
