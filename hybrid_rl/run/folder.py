@@ -16,7 +16,7 @@ from typing import Any
 
 import yaml
 from omegaconf import DictConfig, OmegaConf, open_dict
-from omegaconf.errors import ConfigAttributeError, ConfigKeyError, OmegaConfBaseException
+from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl.errors import MisfitError, PartError, UsageError, printable
 from hybrid_rl.files import targets as parts
@@ -29,7 +29,6 @@ from hybrid_rl.settings.values import SECTIONS, check
 from hybrid_rl.settings.words import quoted
 from hybrid_rl.version import __version__
 
-FIRST = "0.2"  # version that writes its number to config.yaml
 SWEEP = "sweep.json"  # in the folder of runs that one program trains (hybrid_rl.run.members)
 
 
@@ -149,7 +148,7 @@ def _check_version(folder: Path, key: str, config: Mapping[str, Any]) -> None:
     if str(version).split(".")[:2] != __version__.split(".")[:2]:
         commit = summary.get("git_commit")
         todo = f"check out its commit, {commit}, or train again" if commit else "train again"
-        made = f"made by hybrid_rl {version or f'older than {FIRST}'}, and this is {__version__}"
+        made = f"made by hybrid_rl {version or 'before 0.2'}, and this is {__version__}"
         raise UsageError(f"{key}={folder}: {made}; {todo}")
 
 
@@ -161,8 +160,6 @@ def blame_config(folder: Path) -> Iterator[None]:
         yield
     except PartError:  # of a file of the user's own
         raise
-    except (ConfigKeyError, ConfigAttributeError) as error:
-        raise UsageError(f"{path}: lacks {error.full_key or error.key}") from error
     except (UsageError, MisfitError, OmegaConfBaseException) as error:
         line = str(error).partition("\n")[0]
         raise UsageError(f"{path}: {line.removeprefix(f'{path}: ')}") from error
