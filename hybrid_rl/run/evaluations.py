@@ -14,11 +14,11 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.envs.adapters.external import External
-from hybrid_rl.outside.host_loop import HostEvaluator, HostLoop
+from hybrid_rl.outside.host_loop import HostEvaluator
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run.schedule import Pace
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.training.loop import REPLICATED, SEEDS, Loop, compile_lowered
+from hybrid_rl.training.loop import REPLICATED, SEEDS, Axis, Loop, compile_lowered
 from hybrid_rl.training.rollout import advance, begin, evaluation_keys, scores
 from hybrid_rl.types import Params
 
@@ -40,14 +40,11 @@ class Evaluations:
     ) -> None:
         """Compile all of them; params: [S, ...]."""
         keys = self.keys = jnp.stack([evaluation_keys(seed, episodes) for seed in loop.seeds])
-        self._evaluators: dict[str, Evaluator | HostEvaluator] = {}
-        for mode, controller in controllers.items():
-            given = loop.agent.episode, controller, params, keys
-            if isinstance(loop, HostLoop):
-                of = partial(loop.axis.put, controller, f"controllers.{mode}")
-                self._evaluators[mode] = HostEvaluator(*given, loop.numbers, of)
-            else:
-                self._evaluators[mode] = Evaluator(*given, loop, mode)
+        episode = loop.agent.episode
+        self._evaluators = {
+            mode: evaluator_of(episode)(episode, controller, params, keys, loop, mode)
+            for mode, controller in controllers.items()
+        }
 
     def __call__(self, params: Params, cut: Callable[[], bool]) -> list[dict[str, float]] | None:
         """For each learner the mean of every outcome; None once `cut` is true."""
@@ -77,14 +74,12 @@ class Evaluator:
         mode: str = "full",
     ) -> None:
         self.steps = episode.steps
-        self.numbers = {} if loop is None else loop.numbers
+        axis, self.numbers = (Axis(), {}) if loop is None else (loop.axis, loop.numbers)
 
         def one(f: Callable[..., Any], numbers: Any, *given: Any) -> Any:
-            """`begin` or `advance` of one learner with numbers [] of the loop's axis."""
-            if loop is None:
-                return f(episode, controller, *given)
-            acting = loop.axis.put(controller, f"controllers.{mode}", numbers)
-            return f(loop.axis.put(episode, "agent.episode", numbers), acting, *given)
+            """`begin` or `advance` of one learner with numbers [] of the axis."""
+            acting = axis.put(controller, f"controllers.{mode}", numbers)
+            return f(axis.put(episode, "agent.episode", numbers), acting, *given)
 
         def program(f: Callable[..., Any], ins: Any, **options: Any) -> Any:
             """`jit(f)`, on the devices of the loop."""
@@ -116,6 +111,11 @@ class Evaluator:
         return {name: np.asarray(value) for name, value in scores(carry[0]).items()}
 
 
+def evaluator_of(episode: Episode) -> type[Evaluator] | type[HostEvaluator]:
+    """What evaluates in the environment of these episodes."""
+    return HostEvaluator if isinstance(episode.env, External) else Evaluator
+
+
 def evaluate(
     trained: "Trained",
     mode: str = "full",
@@ -133,8 +133,7 @@ def evaluate(
     """
     episode, (controller, _) = trained.episode, trained.learner(mode=mode, world=True)
     keys = jnp.stack([evaluation_keys(seed, episodes) for seed in trained.seeds])
-    kind = HostEvaluator if isinstance(episode.env, External) else Evaluator
-    evaluator = kind(episode, controller, trained.params, keys)
+    evaluator = evaluator_of(episode)(episode, controller, trained.params, keys)
     return evaluator(trained.params, keys, on_decisions) or {}
 
 
