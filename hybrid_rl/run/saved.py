@@ -24,7 +24,7 @@ from omegaconf import DictConfig, OmegaConf
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.core.lifting import lifted_spec
 from hybrid_rl.data import archive
-from hybrid_rl.data.trained import SavedPolicy, part
+from hybrid_rl.data.trained import part
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.mujoco.physics import resolve
 from hybrid_rl.errors import UsageError, printable
@@ -202,9 +202,8 @@ def _trained(prefix: str, file: str, task: str, about: dict[str, Any]) -> Traine
         env = env | {"physics": resolve(env["physics"], 1)}  # of this machine
     env = part(prefix, file, env)
     paid = {name: part(prefix, file, about[name]) for name in configuration.PAID if name in about}
-    trained = SavedPolicy(None, file, task, env, about["episode"])
-    controller = PolicyController(trained.policy, explore=False)
-    params = Params(policy=trained.load(), **_models(prefix, file, task, env, about))
+    policy, params = _parameters(prefix, file, task, env, about)
+    controller = PolicyController(policy, explore=False)
     kept = {name: about[name] for name in (*ACTING, *configuration.PAID) if name in about}
     kept |= {"task": task, "num_seeds": 1, "num_envs": 1, "env": about["env"]}
     notes = [f"trained by: {printable(about['command'])}"] if about.get("command") else []
@@ -223,17 +222,17 @@ def _trained(prefix: str, file: str, task: str, about: dict[str, Any]) -> Traine
     )
 
 
-def _models(prefix: str, file: str, task: str, env: Any, about: dict[str, Any]) -> dict[str, Any]:
-    """Parameters of model, reward and critic in `file`, by their field of Params; {} without."""
-    if not {"model", "reward_model"} <= set(about):
-        return {}
-    named = [name for name in ("model", "reward_model", *OBJECTIVES, "critic") if name in about]
-    made = {name: part(prefix, file, about[name]) for name in named}
-    key, lifted = jax.random.key(0), lifted_spec(made["model"], env.spec)
+def _parameters(
+    prefix: str, file: str, task: str, env: Any, about: dict[str, Any]
+) -> tuple[Any, Params]:
+    """The policy that a description names, and the parameters in `file` to act and to plan with."""
+    plans = {"model", "reward_model"} <= set(about)
+    names = ("policy", *(("model", "reward_model", "critic") if plans else ()))
+    made = {name: part(prefix, file, about[name]) for name in names if name in about}
+    lifted = lifted_spec(made["model"], env.spec) if plans else env.spec
     found = {}
-    for name in ("model", "reward_model", "critic"):
-        if name in made:
-            spec = env.spec if name == "model" else lifted
-            shapes = jax.eval_shape(partial(made[name].init, key, spec))
-            found[name] = archive.policy(file, shapes, task, env, about["episode"], name)
-    return {"reward": found.pop("reward_model"), **found}
+    for name, each in made.items():
+        spec = env.spec if name in ("policy", "model") else lifted
+        shapes = jax.eval_shape(partial(each.init, jax.random.key(0), spec))
+        found[name] = archive.policy(file, shapes, task, env, about["episode"], name)
+    return made["policy"], Params(reward=found.pop("reward_model", None), **found)
