@@ -2,7 +2,7 @@
 
 A row of means is written at the multiples of `log_every`, `eval_every` and `checkpoint_every`. One
 call of the compiled program takes a second or two, and a run can stop between two calls: its
-checkpoint holds the metrics since the last row, so a resumed run logs the same rows as an
+checkpoint holds the metrics' sums since the last row, so a resumed run logs the same rows as an
 uninterrupted one. A learner that reaches NaN or infinity ends; the others of its program continue.
 """
 
