@@ -152,7 +152,7 @@ def train(
         DivergenceError: if every learner reached NaN or infinity.
         CheckpointError: if a checkpoint could not be written or read.
     """
-    output = Output(on_row, progress)
+    output = Output(on_row or (lambda row: None), progress)
     if isinstance(method, Agent):
         values: dict[str, Any] = {**settings}
         run = run_of(method, **values)
@@ -245,13 +245,10 @@ def _check_same(run: Run, folder: Path) -> tuple[str, ...]:
     path, flaw = folder / "config.yaml", ""
     config = yaml_file(path) if path.exists() else {}
     made = max(checkpoint.steps(folder / "checkpoints"))
-    saved = tuple(checkpoint.meta(folder / "checkpoints").get("seeds", ()))
     if "agent" not in config:
         flaw = f'holds the run of a configuration; continue it by train(["resume={folder}"])'
     elif run.config.total_steps < made:
         flaw = f"has {made} steps; total_steps={run.config.total_steps} can be raised, not lowered"
-    elif saved != run.seeds:
-        flaw = f"holds the learners of seed {', '.join(map(str, saved))}; give these"
     if flaw:
         raise UsageError(f"run_dir={folder}: {flaw}")
     then, now = (re.sub(" at 0x[0-9a-f]+", "", each["agent"]) for each in (config, run.config))

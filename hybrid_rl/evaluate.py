@@ -73,7 +73,7 @@ ARGUMENTS = (
 
 def main() -> None:
     """The command."""
-    given, changes = read(__doc__, ARGUMENTS, CHANGES)
+    given, changes = read(__doc__, ARGUMENTS, CHANGES, ("run", "policy"))
     runs = [str(run) for run in members(Path(given["run"]))] if given["run"] else []
     for run in runs or [given["run"]]:
         _evaluate(given | {"run": run}, changes)

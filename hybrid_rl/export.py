@@ -39,7 +39,7 @@ ARGUMENTS = (
 
 def main() -> None:
     """The command."""
-    given, _ = read(__doc__, ARGUMENTS)
+    given, _ = read(__doc__, ARGUMENTS, one=("run", "policy"))
     out = output("out", given["out"], SUFFIXES)
     from hybrid_rl.files.atomic import replacing
     from hybrid_rl.run import exported  # imports JAX, for seconds

@@ -31,6 +31,7 @@ from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import (
     ROBOT,
     ROBOT_CHANGES,
+    SHOWN,
     Argument,
     numbers,
     output,
@@ -59,7 +60,7 @@ ARGUMENTS = (
 
 def main() -> None:
     """The command."""
-    given, changes = read(__doc__, ARGUMENTS, ROBOT_CHANGES)
+    given, changes = read(__doc__, ARGUMENTS, ROBOT_CHANGES, SHOWN)
     named = robot(given, changes)
     from hybrid_rl.analysis import drawing  # imports JAX, for seconds
     from hybrid_rl.envs.adapters.external import External

@@ -73,7 +73,7 @@ def measured(trained: Trained, controller: Any, episodes: int) -> dict[str, Any]
 
 def main() -> None:
     """The command."""
-    given, changes = read(__doc__, ARGUMENTS, CHANGES)
+    given, changes = read(__doc__, ARGUMENTS, CHANGES, ("run", "policy"))
     trained, words = load_changed(given, changes)
     other = load(given["penalised"], "penalised") if given["penalised"] else None
     other = other and replace(other, episode=trained.episode)  # the same world and constraint

@@ -44,14 +44,13 @@ def shared() -> Iterator[None]:
     def program(self: Loop, given: Any) -> Any:
         return kept(lambda: compiled(self, given), "program", given)
 
-    def evaluation(
-        self: Evaluator, loop: Loop, controller: Any, params: Any, keys: Any, mode: str
-    ) -> None:
+    def evaluation(self: Evaluator, episode: Any, controller: Any, *given: Any) -> None:
         def make() -> dict[str, Any]:
-            evaluator(self, loop, controller, params, keys, mode)
+            evaluator(self, episode, controller, *given)
             return vars(self)
 
-        of = loop.agent.episode, controller, loop.axis, keys.shape, precision.current()
+        _, keys, *loop = given
+        of = episode, controller, [each.axis for each in loop[:1]], keys.shape, precision.current()
         vars(self).update(kept(make, "evaluation", *of))
 
     with pytest.MonkeyPatch.context() as patch:

@@ -41,7 +41,6 @@ OPENED = {  # in what writes to run folders; the folder of a run itself is the u
     "files/lock.py": {"folder.mkdir(parents=True, exist_ok=True)"},
     "run/folder.py": {"folder.mkdir(parents=True)"},
     "run/exported.py": {"draft.write_bytes(model.SerializeToString())"},  # of `replacing`
-    "run/machine/jax_settings.py": {"cache.mkdir(parents=True, exist_ok=True)"},
     "run/logs/progress.py": {"os.open(os.devnull, os.O_WRONLY)"},
     "run/checkpoints/checkpoint.py": {
         "draft.mkdir()",  # a name that is free

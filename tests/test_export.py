@@ -209,8 +209,8 @@ def test_the_node_of_the_how_to_publishes_only_what_a_fresh_observation_gives(mo
         ("mode=unit out=a.onnx", "a multilayer perceptron of observations, this is UnitGauss"),
         ("mode=lifted out=a.onnx", "of observations, this is a policy of features"),
         ("mode=world out=a.stablehlo", "mode=world: plans from the state of the world"),
-        ("mode=both out=a.onnx", "mode=both: the run has policy, full"),
-        ("seed=5 out=a.onnx", "seed=5: the run has 3, 4"),
+        ("mode=both out=a.onnx", "mode=both: choose one of policy, full"),
+        ("seed=5 out=a.onnx", "seed=5: choose one of 3, 4"),
         ("platforms=gpu out=a.stablehlo", "platforms=gpu: choose one of cpu, cuda"),
     ],
 )

@@ -172,7 +172,7 @@ def test_a_file_holds_the_learner_that_is_asked_for(tmp_path, capfd) -> None:
     jax.tree.map(np.testing.assert_array_equal, now.params.policy, second)
     capfd.readouterr()
     assert main(f"run={folder}", f"policy={file}", "learner=5") == 2
-    assert "seed=5: the run has 3, 4" in only_line(capfd)
+    assert "seed=5: choose one of 3, 4" in only_line(capfd)
 
 
 def test_a_file_holds_the_reward_and_the_constraint_of_its_run(tmp_path) -> None:

@@ -17,7 +17,7 @@ from hybrid_rl.errors import CheckpointError
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.checkpoints import checkpoint
-from hybrid_rl.run.checkpoints.store import read_part
+from hybrid_rl.run.checkpoints.store import read_parts
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.run.recording import scripted_expert
 from hybrid_rl.run.saved import Trained, build_run, restore
@@ -87,7 +87,7 @@ def newest(trained: Trained, run: str | Path) -> Trained | None:
     folder, agent = Path(run) / "checkpoints", trained.agent
     if agent is None or not any(step > trained.step for step in checkpoint.steps(folder)):
         return None
-    step, state, _ = read_part(folder, agent, trained.seeds, "learners")
+    step, state, *_ = read_parts(folder, agent, trained.seeds, ["learners"])
     params = jax.vmap(agent.params, axis_size=len(trained.seeds))(state)
     return replace(trained, params=params, step=step)
 

@@ -23,6 +23,18 @@ def text(name: str, given: str) -> str:
     return given
 
 
+def _kind(parse: Callable[[str], Any], holds: Callable[[Any], bool], must: str) -> Kind:
+    """The values that `parse` makes of a text, where they hold; must: words of the error."""
+
+    def kind(name: str, given: str) -> Any:
+        with suppress(ValueError):
+            if holds(value := parse(given)):
+                return value
+        raise UsageError(f"{name}={given}: {must}")
+
+    return kind
+
+
 def flag(name: str, given: str) -> bool:
     """true or false."""
     return one_of("true", "false")(name, given.lower()) == "true"
@@ -30,27 +42,15 @@ def flag(name: str, given: str) -> bool:
 
 def whole(least: int = 1, even: bool = False) -> Kind:
     """A whole number."""
-
-    def kind(name: str, given: str) -> int:
-        if given.isdecimal() and int(given) >= least and not (even and int(given) % 2):
-            return int(given)
-        called = "an even number" if even else "a whole number"
-        raise UsageError(f"{name}={given}: must be {called}, {least + even} or more")
-
-    return kind
+    called = "an even number" if even else "a whole number"
+    must = f"must be {called}, {least + even} or more"
+    return _kind(int, lambda n: n >= least and not (even and n % 2), must)
 
 
 def number(least: float = -math.inf, what: str = "") -> Kind:
     """A finite number; what: words that follow "a number" in the message."""
     what = what or (f", {least:g} or more" if least > -math.inf else "")
-
-    def kind(name: str, given: str) -> float:
-        with suppress(ValueError):
-            if math.isfinite(float(given)) and float(given) >= least:
-                return float(given)
-        raise UsageError(f"{name}={given}: must be a number{what}")
-
-    return kind
+    return _kind(float, lambda x: math.isfinite(x) and x >= least, f"must be a number{what}")
 
 
 def numbers(each: Kind | None = None) -> Kind:
@@ -61,13 +61,7 @@ def numbers(each: Kind | None = None) -> Kind:
 
 def one_of(*known: str) -> Kind:
     """One of the names."""
-
-    def kind(name: str, given: str) -> str:
-        if given not in known:
-            raise UsageError(f"{name}={given}: choose one of {', '.join(filter(None, known))}")
-        return given
-
-    return kind
+    return _kind(str, known.__contains__, f"choose one of {', '.join(filter(None, known))}")
 
 
 def several(*known: str) -> Kind:
@@ -113,25 +107,26 @@ ROBOT = (  # of commands that show a trained robot, or a scripted expert
 ROBOT_CHANGES = {**CHANGES, "expert": "with task=T: a key of its expert"}
 
 
+SHOWN = ("run", "policy", "task")  # of ROBOT, one of which is given
+
+
 def robot(given: Mapping[str, Any], changes: Mapping[str, str]) -> str:
     """The run, policy or task that values of ROBOT name."""
-    named = [given[name] for name in ("run", "policy", "task") if given[name]]
-    if len(named) != 1:
-        raise UsageError(
-            "run, policy, task: give one of them; run=DIR is a folder that training wrote, "
-            "policy=NAME a trained policy, task=T shows the task's scripted expert"
-        )
+    named = next(given[name] for name in SHOWN if given[name])
     others = [*(argument.name for argument in GOAL), "mode"] if given["task"] else ["expert"]
     for argument in ROBOT:
         name, chosen = argument.name, given[argument.name] != argument.default
         if name in others and (chosen or any(key.startswith(f"{name}.") for key in changes)):
             fits = "run=DIR or policy=NAME" if given["task"] else "task=T"
-            raise UsageError(f"{name}: is not for {named[0]}; give it with {fits}")
-    return named[0]
+            raise UsageError(f"{name}: is not for {named}; give it with {fits}")
+    return named
 
 
 def read(
-    doc: str | None, known: Sequence[Argument], groups: Mapping[str, str] | None = None
+    doc: str | None,
+    known: Sequence[Argument],
+    groups: Mapping[str, str] | None = None,
+    one: Sequence[str] = (),
 ) -> tuple[dict[str, Any], dict[str, str]]:
     """The values of all `known` arguments, and the `group.key=value` of the user.
 
@@ -141,6 +136,7 @@ def read(
         doc: the docstring of its module.
         known: its arguments.
         groups: groups of the configuration whose keys it accepts -> their description in --help.
+        one: the arguments of which the user gives exactly one.
     """
     groups = groups or {}
     line = sys.argv[1:]
@@ -169,6 +165,9 @@ def read(
     for argument in known:
         if argument.needed and not values[argument.name]:
             raise UsageError(f"{argument.name}: not given; give {argument.needed}")
+    if one and sum(bool(values[name]) for name in one) != 1:
+        about = "; ".join(f"{name}=, {named[name].about}" for name in one)
+        raise UsageError(f"{', '.join(one)}: give one of them: {about}")
     return values, changes
 
 

@@ -41,7 +41,10 @@ Job = Callable[[DictConfig, Sequence[str]], Any]  # (composed configuration, ove
 
 
 def main(job: Job) -> None:
-    """Run `job` on the configuration that the command line composes; -m: on those of a sweep."""
+    """Run `job` on the configuration that the command line composes; -m: on those of a sweep.
+
+    A choice of Hydra's own, such as hydra/launcher, makes a sweep, if only of one job.
+    """
     if set(arguments.HELP) & set(sys.argv[1:]):
         print(usage(inspect.getmodule(job)))
         return
@@ -49,12 +52,9 @@ def main(job: Job) -> None:
     def composed() -> None:
         options, words, folders = _sorted(sys.argv[1:])
         words = start.add_recipe(words, *folders)
-        if {*SWEEP} & {*options}:
+        if {*SWEEP} & {*options} or any(text.startswith("hydra/") for text in words):
             _sweep(job, words, folders)
             return
-        for text in words:
-            if text.startswith("hydra/"):
-                raise UsageError(f"{text}: is for the jobs of a sweep; add -m")
         config = configuration.compose_raw(words, *folders)
         if {*SHOW} & {*options}:
             print(OmegaConf.to_yaml(config), end="")

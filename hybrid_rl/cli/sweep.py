@@ -38,7 +38,7 @@ from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings import words
 from hybrid_rl.settings.compose import UNCOMPOSED, explain
 from hybrid_rl.settings.values import check
-from hybrid_rl.settings.words import forced, parse, quoted, typed
+from hybrid_rl.settings.words import forced, quoted, typed
 
 Result = dict[str, Any]  # of a job: code, line
 POLL = 0.5  # [s] between two checks of the jobs
@@ -48,11 +48,9 @@ ACCELERATED = ("auto", "mjx", "warp")  # physics that may need a GPU to build a 
 
 def jobs_of(parsed: Sequence[Override]) -> list[list[str]]:
     """The overrides of each job: every combination of the values."""
-    for each in parsed:
-        if each.is_interval_sweep():
-            raise UsageError(f"{each.input_line}: a sweep has no ranges; list values")
-        if each.is_sweep_override() and not [*each.sweep_string_iterator()]:
-            raise UsageError(f"{each.input_line}: has no values")
+    for each in (each for each in parsed if each.is_sweep_override()):
+        if each.is_interval_sweep() or not [*each.sweep_string_iterator()]:
+            raise UsageError(f"{each.input_line}: gives no values; list them")
     return BasicSweeper.split_arguments([*parsed], None)[0]
 
 
@@ -115,7 +113,7 @@ class Sweeper:
         configs = self._checked(jobs)
         folder = Path(str(self.config.hydra.sweep.dir))
         folder.mkdir(parents=True, exist_ok=True)
-        jobs = _folders(jobs, configs)
+        jobs, folders = zip(*_folders(jobs, configs), strict=True)
         write_text(folder / "multirun.yaml", OmegaConf.to_yaml(self.config))
         print(f"sweep of {len(jobs)} jobs: {folder}", flush=True)
         results, given = self.task.results, [*map(self._forced, jobs)]
@@ -125,7 +123,7 @@ class Sweeper:
             else:
                 launch(self.launcher, given, results)
         finally:
-            _report(folder, self.task.labels, jobs, results)
+            _report(folder, self.task.labels, folders, results)
         worst = max(result["code"] for result in results.values())
         if worst:
             sys.exit(worst)
@@ -178,19 +176,20 @@ class Sweeper:
             program.axis_of([member.values for member in swept], runs)
 
 
-def _folders(jobs: Sequence[Sequence[str]], configs: Sequence[DictConfig]) -> list[list[str]]:
-    """The overrides of each job, with a run folder of its own.
+def _folders(
+    jobs: Sequence[Sequence[str]], configs: Sequence[DictConfig]
+) -> Iterator[tuple[list[str], str]]:
+    """The overrides of each job, with a run folder of its own, and that folder.
 
     Jobs with the same run_dir=X write into X/0, X/1, ...; jobs without one into
     runs/TASK/ALGO/TIME_0, ..., which are created here, so that no other sweep uses them. One whose
     run_dir holds a checkpoint goes on from it; `resume` refuses other settings.
     """
     given = [config.run_dir for config in configs]
-    complete = []
     for number, (overrides, config) in enumerate(zip(jobs, configs, strict=True)):
         mine = [text for text in overrides if not text.startswith("run_dir=")]
         if config.resume is not None:
-            complete.append(list(overrides))
+            yield [*overrides], str(config.resume)
             continue
         if config.run_dir is None:
             folder = new_folder(configuration.resolve(config, overrides), f"_{number}")
@@ -198,23 +197,21 @@ def _folders(jobs: Sequence[Sequence[str]], configs: Sequence[DictConfig]) -> li
             same = given.count(config.run_dir) > 1
             folder = Path(str(config.run_dir), str(number) if same else "")
         begun = any(checkpoint.steps(run / "checkpoints") for run in members(folder) or [folder])
-        complete.append([*mine, f"{'resume' if begun else 'run_dir'}={quoted(str(folder))}"])
-    return complete
+        own = f"{'resume' if begun else 'run_dir'}={quoted(str(folder))}"
+        yield [*mine, own], str(folder)
 
 
 def _report(
     folder: Path,
     labels: Mapping[int, str],
-    jobs: Sequence[Sequence[str]],
+    folders: Sequence[str],
     results: dict[int, Result],
 ) -> None:
     """Print the table of a sweep, and write it to jobs.json."""
     rows = []
-    for number, overrides in enumerate(jobs):
-        given = [text for text in overrides if text.startswith(("run_dir=", "resume="))]
-        run_dir = "".join(str(each.value()) for each in parse(given[:1]))
+    for number, run_dir in enumerate(folders):
         result = results.get(number, {"code": None, "line": "not run"})
-        if result["code"] != 0 and run_dir:
+        if result["code"] != 0:
             remove_empty(Path(run_dir))
         rows.append({"job": number, "overrides": labels[number], "run_dir": run_dir, **result})
     write_text(folder / "jobs.json", json.dumps(rows, indent=1) + "\n")

@@ -3,6 +3,7 @@
 import json
 import os
 import stat
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -42,23 +43,20 @@ def text(file: Path) -> str:
 
 def json_file(file: Path) -> dict[str, Any]:
     """The group of keys in a file of JSON."""
-    try:
-        values = json.loads(text(file))
-    except json.JSONDecodeError as error:
-        raise UsageError(f"{file}: is not JSON: {error}") from error
-    return _group(file, values)
+    return _group(file, "JSON", json.loads)
 
 
 def yaml_file(file: Path) -> dict[str, Any]:
     """The group of keys in a YAML file."""
+    return _group(file, "YAML", lambda content: yaml.load(content, Loader))
+
+
+def _group(file: Path, kind: str, parse: Callable[[str], Any]) -> dict[str, Any]:
+    """The group of keys that `parse` makes of the text of a file."""
+    content, flaw = text(file), "is empty, or no group of keys"
     try:
-        values = yaml.load(text(file), Loader)
-    except yaml.YAMLError as error:
-        raise UsageError(f"{file}: is no YAML: {' '.join(str(error).split())}") from error
-    return _group(file, values)
-
-
-def _group(file: Path, values: Any) -> dict[str, Any]:
-    if not isinstance(values, dict):
-        raise UsageError(f"{file}: is empty, or no group of keys")
-    return values
+        if isinstance(values := parse(content), dict):
+            return values
+    except (ValueError, yaml.YAMLError) as error:
+        flaw = f"is no {kind}: {' '.join(str(error).split())}"
+    raise UsageError(f"{file}: {flaw}")

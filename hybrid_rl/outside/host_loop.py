@@ -14,8 +14,9 @@ The programs donate the state: the replay memory is not copied. Metrics stay on 
 the end of a call.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import jax
@@ -30,7 +31,7 @@ from hybrid_rl.outside.sending import mailbox, send
 from hybrid_rl.protocols import Controller
 from hybrid_rl.training.agent import AgentState
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Loop, put
+from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Axis, Loop, put
 from hybrid_rl.training.metrics import outcome
 from hybrid_rl.types import Clock, EnvState, Params, PyTree
 
@@ -179,7 +180,7 @@ class HostEvaluator:
     """Episodes of every learner under `controller`, on environments that are not those of training.
 
     It compiles when it is made. params: [S, ...]; keys: [S, N], one per episode, which seed them;
-    numbers, of: as of `Acting`.
+    loop: whose numbers it has, None for none; mode: of the controller.
     """
 
     def __init__(
@@ -188,28 +189,30 @@ class HostEvaluator:
         controller: Controller,
         params: Params,
         keys: Array,
-        numbers: Mapping[str, Array] = NONE,
-        of: Callable[[Any], Controller] | None = None,
+        loop: Loop | None = None,
+        mode: str = "full",
     ) -> None:
         """Compile one decision in all of them."""
+        axis, numbers = (Axis(), NONE) if loop is None else (loop.axis, loop.numbers)
+        of = partial(axis.put, controller, f"controllers.{mode}")
         self.episode = episode
         self._acting = Acting(episode.spec, controller, keys, numbers, of)
         self._acting.compile(params)
 
     def __call__(
-        self, params: Params, keys: Array, cut: Callable[[], bool] = lambda: False
+        self, params: Params, keys: Array, cut: Callable[[int], Any] = lambda made: False
     ) -> dict[str, np.ndarray] | None:
-        """The `return` [S, N] of each episode, and `success` if infos say; None once `cut`."""
+        """The `return` [S, N] of each episode, and `success` if infos say; None once cut(made)."""
         seeds = [seed_of(*map(int, row)) for row in jax.random.key_data(keys).reshape(-1, 2)]
         copies = copies_of(self.episode, seeds)
         self._acting.begin(keys)
         obs, done, returns = copies.reset(), np.zeros(len(seeds), bool), np.zeros(len(seeds))
-        flagged, success = False, np.zeros(len(seeds))
+        flagged, success, made = False, np.zeros(len(seeds)), 0
         while not done.all():
-            if cut():
+            if cut(made):
                 copies.close()
                 return None
-            u = self._acting(params, obs.reshape(*keys.shape, -1))
+            u, made = self._acting(params, obs.reshape(*keys.shape, -1)), made + 1
             got = copies.step(u.reshape(len(seeds), -1))
             returns += np.where(done, 0, got.reward)
             if copies.success is not None:

@@ -5,7 +5,6 @@ A call takes a few seconds at most, so that a signal is heard between two calls.
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from itertools import count
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
@@ -15,10 +14,11 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.envs.adapters.external import External
-from hybrid_rl.outside.host_loop import HostEvaluator, HostLoop
+from hybrid_rl.outside.host_loop import HostEvaluator
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run.schedule import Pace
-from hybrid_rl.training.loop import REPLICATED, SEEDS, Loop, compile_lowered
+from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.loop import REPLICATED, SEEDS, Axis, Loop, compile_lowered
 from hybrid_rl.training.rollout import advance, begin, evaluation_keys, scores
 from hybrid_rl.types import Params
 
@@ -40,20 +40,17 @@ class Evaluations:
     ) -> None:
         """Compile all of them; params: [S, ...]."""
         keys = self.keys = jnp.stack([evaluation_keys(seed, episodes) for seed in loop.seeds])
-        self._evaluators: dict[str, Evaluator | HostEvaluator] = {}
-        for mode, controller in controllers.items():
-            if isinstance(loop, HostLoop):
-                of = partial(loop.axis.put, controller, f"controllers.{mode}")
-                given = loop.agent.episode, controller, params, keys, loop.numbers, of
-                self._evaluators[mode] = HostEvaluator(*given)
-            else:
-                self._evaluators[mode] = Evaluator(loop, controller, params, keys, mode)
+        episode = loop.agent.episode
+        self._evaluators = {
+            mode: evaluator_of(episode)(episode, controller, params, keys, loop, mode)
+            for mode, controller in controllers.items()
+        }
 
     def __call__(self, params: Params, cut: Callable[[], bool]) -> list[dict[str, float]] | None:
         """For each learner the mean of every outcome; None once `cut` is true."""
         means: dict[str, np.ndarray] = {}  # [S]
         for mode, evaluator in self._evaluators.items():
-            outcomes = evaluator(params, self.keys, cut)
+            outcomes = evaluator(params, self.keys, lambda made: cut())
             if outcomes is None:
                 return None
             means |= {EVALUATED[mode] + name: each.mean(-1) for name, each in outcomes.items()}
@@ -61,59 +58,62 @@ class Evaluations:
 
 
 class Evaluator:
-    """Episodes of every learner of `loop` under `controller`, in calls of a few seconds at most.
+    """Episodes of every learner under `controller`, in calls of a few seconds at most.
 
-    It compiles when it is made. params: [S, ...]; keys: [S, N], one per episode; mode: of the
-    controller, whose numbers the loop's axis has.
+    It compiles when it is made. params: [S, ...]; keys: [S, N], one per episode; loop: whose
+    devices and numbers it has, None for one device; mode: of the controller.
     """
 
     def __init__(
-        self, loop: Loop, controller: Controller, params: Params, keys: Array, mode: str = "full"
+        self,
+        episode: Episode,
+        controller: Controller,
+        params: Params,
+        keys: Array,
+        loop: Loop | None = None,
+        mode: str = "full",
     ) -> None:
-        self.steps, self.numbers = loop.agent.episode.steps, loop.numbers
+        self.steps = episode.steps
+        axis, self.numbers = (Axis(), {}) if loop is None else (loop.axis, loop.numbers)
 
         def one(f: Callable[..., Any], numbers: Any, *given: Any) -> Any:
-            """`begin` or `advance` of one learner with numbers [] of the loop's axis."""
-            put, episode = loop.axis.put, loop.agent.episode
-            acting = put(controller, f"controllers.{mode}", numbers)
-            return f(put(episode, "agent.episode", numbers), acting, *given)
+            """`begin` or `advance` of one learner with numbers [] of the axis."""
+            acting = axis.put(controller, f"controllers.{mode}", numbers)
+            return f(axis.put(episode, "agent.episode", numbers), acting, *given)
 
-        first, more = partial(one, begin), partial(one, advance)
-        program = loop.shard(jax.vmap(first), SEEDS, SEEDS)
-        self._begin = compile_lowered(program.lower(self.numbers, keys))
-        takes, carry = (SEEDS, SEEDS, SEEDS, REPLICATED), self._begin(self.numbers, keys)
-        program = loop.shard(jax.vmap(more, (0, 0, 0, None)), takes, SEEDS, donate_argnums=2)
-        lowered = program.lower(self.numbers, params, carry, jnp.int32(0))
-        self._advance = compile_lowered(lowered)
+        def program(f: Callable[..., Any], ins: Any, **options: Any) -> Any:
+            """`jit(f)`, on the devices of the loop."""
+            return jax.jit(f, **options) if loop is None else loop.shard(f, ins, SEEDS, **options)
+
+        first = program(jax.vmap(partial(one, begin)), SEEDS)
+        self._begin = compile_lowered(first.lower(self.numbers, keys))
+        given = self.numbers, params, self._begin(self.numbers, keys), jnp.int32(0)
+        more = jax.vmap(partial(one, advance), (0, 0, 0, None))
+        more = program(more, (SEEDS, SEEDS, SEEDS, REPLICATED), donate_argnums=2)
+        self._advance = compile_lowered(more.lower(*given))
 
     def __call__(
-        self, params: Params, keys: Array, cut: Callable[[], bool]
+        self, params: Params, keys: Array, cut: Callable[[int], bool | None]
     ) -> dict[str, np.ndarray] | None:
-        """The `scores` [S, N]; None once `cut` is true."""
-        begun, more = self._begin(self.numbers, keys), partial(self._advance, self.numbers, params)
-        return finish_episodes(begun, more, self.steps, lambda made: cut())
+        """The `scores` [S, N] at the end of the episodes; None once `cut` is true.
+
+        cut: is called with the decisions made, between calls of a few seconds at most.
+        """
+        carry, pace, made = self._begin(self.numbers, keys), Pace(), 0
+        while not np.asarray(carry[0].done).all():
+            if cut(made):
+                return None
+            rounds, began = pace.rounds(self.steps), perf_counter()
+            given = self.numbers, params, carry, jnp.int32(rounds)
+            carry = jax.block_until_ready(self._advance(*given))
+            pace.took(rounds, perf_counter() - began)
+            made += rounds
+        return {name: np.asarray(value) for name, value in scores(carry[0]).items()}
 
 
-def finish_episodes(
-    carry: tuple,
-    more: Callable[[tuple, Array], tuple],
-    steps: int,
-    cut: Callable[[int], bool | None],
-) -> dict[str, np.ndarray] | None:
-    """The `scores` at the end of the episodes of `carry` (rollout.begin); None once `cut` is true.
-
-    more: the carry after so many decisions, of `steps` at most; cut: is called with the decisions
-    made, between calls of a few seconds at most.
-    """
-    pace, made = Pace(), 0
-    while not np.asarray(carry[0].done).all():
-        if cut(made):
-            return None
-        rounds, began = pace.rounds(steps), perf_counter()
-        carry = jax.block_until_ready(more(carry, jnp.int32(rounds)))
-        pace.took(rounds, perf_counter() - began)
-        made += rounds
-    return {name: np.asarray(value) for name, value in scores(carry[0]).items()}
+def evaluator_of(episode: Episode) -> type[Evaluator] | type[HostEvaluator]:
+    """What evaluates in the environment of these episodes."""
+    return HostEvaluator if isinstance(episode.env, External) else Evaluator
 
 
 def evaluate(
@@ -133,16 +133,8 @@ def evaluate(
     """
     episode, (controller, _) = trained.episode, trained.learner(mode=mode, world=True)
     keys = jnp.stack([evaluation_keys(seed, episodes) for seed in trained.seeds])
-    if isinstance(episode.env, External):
-        decisions = count()
-        got = HostEvaluator(episode, controller, trained.params, keys)(
-            trained.params, keys, lambda: bool(on_decisions(next(decisions)))
-        )
-        return got or {}
-    first = jax.jit(jax.vmap(partial(begin, episode, controller)))
-    more = jax.vmap(partial(advance, episode, controller), (0, 0, None))
-    more = partial(jax.jit(more, donate_argnums=1), trained.params)
-    return finish_episodes(first(keys), more, episode.steps, on_decisions) or {}
+    evaluator = evaluator_of(episode)(episode, controller, trained.params, keys)
+    return evaluator(trained.params, keys, on_decisions) or {}
 
 
 def report(trained: "Trained", mode: str, got: dict[str, np.ndarray]) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from typing import Any
 
 import yaml
 from omegaconf import DictConfig, OmegaConf, open_dict
-from omegaconf.errors import ConfigAttributeError, ConfigKeyError, OmegaConfBaseException
+from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl.errors import MisfitError, PartError, UsageError, printable
 from hybrid_rl.files import targets as parts
@@ -25,11 +25,10 @@ from hybrid_rl.files.lock import lock
 from hybrid_rl.files.reading import json_file, yaml_file
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.settings.build import CONF
-from hybrid_rl.settings.values import COUNTS, SECTIONS, check_words
+from hybrid_rl.settings.values import SECTIONS, check
 from hybrid_rl.settings.words import quoted
 from hybrid_rl.version import __version__
 
-FIRST = "0.2"  # version that writes its number to config.yaml
 SWEEP = "sweep.json"  # in the folder of runs that one program trains (hybrid_rl.run.members)
 
 
@@ -127,11 +126,8 @@ def read(folder: Path, key: str) -> DictConfig:
             f"{key}={folder}: trained from parts in Python, which its config.yaml cannot build; "
             "hybrid_rl.train(agent, run_dir=DIR, total_steps=N) reads it back and continues it"
         )
-    missing = [name for name in ("task", "algo", "seed", *SECTIONS, *COUNTS) if name not in config]
     with blame_config(folder):
-        if missing:
-            raise UsageError(f"lacks {', '.join(missing)}")
-        check_words(config)
+        check(config)
     return config
 
 
@@ -152,7 +148,7 @@ def _check_version(folder: Path, key: str, config: Mapping[str, Any]) -> None:
     if str(version).split(".")[:2] != __version__.split(".")[:2]:
         commit = summary.get("git_commit")
         todo = f"check out its commit, {commit}, or train again" if commit else "train again"
-        made = f"made by hybrid_rl {version or f'older than {FIRST}'}, and this is {__version__}"
+        made = f"made by hybrid_rl {version or 'before 0.2'}, and this is {__version__}"
         raise UsageError(f"{key}={folder}: {made}; {todo}")
 
 
@@ -164,8 +160,6 @@ def blame_config(folder: Path) -> Iterator[None]:
         yield
     except PartError:  # of a file of the user's own
         raise
-    except (ConfigKeyError, ConfigAttributeError) as error:
-        raise UsageError(f"{path}: lacks {error.full_key or error.key}") from error
     except (UsageError, MisfitError, OmegaConfBaseException) as error:
         line = str(error).partition("\n")[0]
         raise UsageError(f"{path}: {line.removeprefix(f'{path}: ')}") from error

@@ -47,6 +47,7 @@ ONLY = "with resume only total_steps and precision can be changed"
 Handler = Callable[[Callable[[int], None]], AbstractContextManager]
 
 
+@dataclass
 class Output:
     """Where a run reports, besides its folder: the console, and a function of the user's.
 
@@ -55,21 +56,18 @@ class Output:
     and it is not called again.
     """
 
-    def __init__(self, function: Callable[[Row], Any] | None = None, progress: bool = True) -> None:
-        self._function, self._asked, self.progress = function, False, progress
-        self.ask: Callable[[int], None] = lambda number: None
-        self.problem: BaseException | None = None
+    function: Callable[[Row], Any] = lambda row: None
+    progress: bool = True
+    ask: Callable[[int], None] = lambda number: None
+    problem: BaseException | None = None
 
     def __call__(self, row: Row) -> None:
         """Call the function."""
-        if self._function is None or self.problem is not None:
-            return
         try:
-            ends = self._function(dict(row)) is False
+            if self.problem is None and self.function(dict(row)) is False:
+                self.ask(0)
         except FAULTS as problem:
-            self.problem, ends = problem, True
-        if ends and not self._asked:
-            self._asked = True
+            self.problem = problem
             self.ask(0)
 
 

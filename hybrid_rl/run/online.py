@@ -234,7 +234,7 @@ class OnlineLearner:
                 if (env or {}).get("_target_") != OUTSIDE:
                     raise UsageError(f"folder={path}: holds a run that train wrote; choose another")
             shelf = Shelf(self._loop, [path / "checkpoints"], [written(self.config)])
-            shelf.save(learner.state, {}, Record([[]], [None], step=learner.read))
+            shelf.save(learner.state, Record([[]], [None], step=learner.read))
             run_folder.write(path, self.config)
 
     @classmethod
@@ -252,7 +252,7 @@ class OnlineLearner:
         learner = cls(config, learn=learn)
         learner.close()
         shelf = Shelf(learner._loop, [Path(folder) / "checkpoints"], [{}])
-        learner._learner.state, _, record, _ = shelf.restore()
+        learner._learner.state, record, _ = shelf.restore()
         learner._start(record.step)
         return learner
 

@@ -85,10 +85,7 @@ def save_policy(
         raise UsageError(f"run={folder}: has no policy with parameters")
     about = _description(folder, run, command, seed)
     known = _models(folder, run, params, about) if models else {}
-    try:
-        save(file, run.task, run.episode.spec, params.policy, about, known)
-    except ValueError as error:
-        raise UsageError(str(error)) from error
+    save(file, run.task, run.episode.spec, params.policy, about, known)
     return run.task, sum(leaf.size for leaf in jax.tree.leaves((params.policy, known)))
 
 

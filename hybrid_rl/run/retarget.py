@@ -67,9 +67,7 @@ def load_changed(
     trained = load_named(given)
     if isinstance(trained.episode.env, Robot | Outside):
         raise UsageError(f"{trained.task}: {ALONE}")
-    changed = {key: given[key] for key in GOALS if given[key]}
-    changed |= {key: value for key, value in changes.items() if key.split(".")[0] in GOALS}
-    changed |= changes  # the world last
+    changed = {key: given[key] for key in GOALS if given[key]} | dict(changes)
     words = [f"{key}={value}" for key, value in changed.items()]
     return retargeted(trained, words, given["config_dir"]), changed
 

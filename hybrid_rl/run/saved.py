@@ -24,7 +24,7 @@ from omegaconf import DictConfig, OmegaConf
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.core.lifting import lifted_spec
 from hybrid_rl.data import archive
-from hybrid_rl.data.trained import SavedPolicy, part
+from hybrid_rl.data.trained import part
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.mujoco.physics import resolve
 from hybrid_rl.errors import UsageError, printable
@@ -33,12 +33,12 @@ from hybrid_rl.outside.acting import TrainedPolicy
 from hybrid_rl.outside.lag import known_lag
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run import folder as run_folder
-from hybrid_rl.run.checkpoints.store import read_part
+from hybrid_rl.run.checkpoints.store import read_parts
 from hybrid_rl.run.logs.progress import say
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings.build import Run
-from hybrid_rl.settings.values import check
+from hybrid_rl.settings.values import one_of
 from hybrid_rl.training.agent import Agent, AgentState
 from hybrid_rl.training.ahead import ahead
 from hybrid_rl.training.contract import needs_world
@@ -100,10 +100,8 @@ class Trained:
                 than observations.
         """
         seed = self.seeds[0] if seed is None else seed
-        if seed not in self.seeds:
-            raise UsageError(f"seed={seed}: the run has {', '.join(map(str, self.seeds))}")
-        if mode not in self.controllers:
-            raise UsageError(f"mode={mode}: the run has {', '.join(self.controllers)}")
+        one_of("seed", seed, self.seeds)
+        one_of("mode", mode, self.controllers)
         if not world and needs_world(self.controllers[mode]):
             raise UsageError(
                 f"mode={mode}: plans from the state of the world (model=world), which observations "
@@ -121,7 +119,6 @@ def load(folder: Path | str, key: str = "run") -> Trained:
     folder = Path(folder)
     config = run_folder.read_trained(folder, key)
     with run_folder.blame_config(folder):
-        check(config)
         prepare(config)
         trained = of(build_run(config), folder)
     for note in trained.notes:
@@ -166,7 +163,8 @@ def restore(folder: Path, run: Run, part: str = "learners") -> tuple[int, AgentS
 
     part: the field of the state that is read; the others are None.
     """
-    return read_part(folder / "checkpoints", run.agent, run.seeds, part)
+    step, state, _, notes = read_parts(folder / "checkpoints", run.agent, run.seeds, [part])
+    return step, state, notes
 
 
 def names() -> list[str]:
@@ -176,11 +174,6 @@ def names() -> list[str]:
 
 def load_named(given: Mapping[str, Any]) -> Trained:
     """The run or policy that the arguments run=DIR or policy=NAME name."""
-    if bool(given["run"]) == bool(given["policy"]):
-        raise UsageError(
-            "run, policy: give one of them; run=DIR is a folder that training wrote, "
-            f"policy=NAME one of {', '.join(names())} or a file"
-        )
     return read(given["policy"]) if given["policy"] else load(Path(given["run"]))
 
 
@@ -209,9 +202,8 @@ def _trained(prefix: str, file: str, task: str, about: dict[str, Any]) -> Traine
         env = env | {"physics": resolve(env["physics"], 1)}  # of this machine
     env = part(prefix, file, env)
     paid = {name: part(prefix, file, about[name]) for name in configuration.PAID if name in about}
-    trained = SavedPolicy(None, file, task, env, about["episode"])
-    controller = PolicyController(trained.policy, explore=False)
-    params = Params(policy=trained.load(), **_models(prefix, file, task, env, about))
+    policy, params = _parameters(prefix, file, task, env, about)
+    controller = PolicyController(policy, explore=False)
     kept = {name: about[name] for name in (*ACTING, *configuration.PAID) if name in about}
     kept |= {"task": task, "num_seeds": 1, "num_envs": 1, "env": about["env"]}
     notes = [f"trained by: {printable(about['command'])}"] if about.get("command") else []
@@ -230,17 +222,17 @@ def _trained(prefix: str, file: str, task: str, about: dict[str, Any]) -> Traine
     )
 
 
-def _models(prefix: str, file: str, task: str, env: Any, about: dict[str, Any]) -> dict[str, Any]:
-    """Parameters of model, reward and critic in `file`, by their field of Params; {} without."""
-    if not {"model", "reward_model"} <= set(about):
-        return {}
-    named = [name for name in ("model", "reward_model", *OBJECTIVES, "critic") if name in about]
-    made = {name: part(prefix, file, about[name]) for name in named}
-    key, lifted = jax.random.key(0), lifted_spec(made["model"], env.spec)
+def _parameters(
+    prefix: str, file: str, task: str, env: Any, about: dict[str, Any]
+) -> tuple[Any, Params]:
+    """The policy that a description names, and the parameters in `file` to act and to plan with."""
+    plans = {"model", "reward_model"} <= set(about)
+    names = ("policy", *(("model", "reward_model", "critic") if plans else ()))
+    made = {name: part(prefix, file, about[name]) for name in names if name in about}
+    lifted = lifted_spec(made["model"], env.spec) if plans else env.spec
     found = {}
-    for name in ("model", "reward_model", "critic"):
-        if name in made:
-            spec = env.spec if name == "model" else lifted
-            shapes = jax.eval_shape(partial(made[name].init, key, spec))
-            found[name] = archive.policy(file, shapes, task, env, about["episode"], name)
-    return {"reward": found.pop("reward_model"), **found}
+    for name, each in made.items():
+        spec = env.spec if name in ("policy", "model") else lifted
+        shapes = jax.eval_shape(partial(each.init, jax.random.key(0), spec))
+        found[name] = archive.policy(file, shapes, task, env, about["episode"], name)
+    return made["policy"], Params(reward=found.pop("reward_model", None), **found)

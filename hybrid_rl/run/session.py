@@ -2,7 +2,7 @@
 
 A row of means is written at the multiples of `log_every`, `eval_every` and `checkpoint_every`. One
 call of the compiled program takes a second or two, and a run can stop between two calls: its
-checkpoint holds the metrics since the last row, so a resumed run logs the same rows as an
+checkpoint holds the metrics' sums since the last row, so a resumed run logs the same rows as an
 uninterrupted one. A learner that reaches NaN or infinity ends; the others of its program continue.
 """
 
@@ -43,7 +43,6 @@ class Session:
     began: float = field(default_factory=monotonic)
     stop: int | None = None  # the signal that asked for an end; 0: the program did
     saved: tuple[int, bool] | None = None  # step and `unevaluated` of the newest checkpoint
-    gathered: records.Metrics = field(default_factory=dict)  # since the last row of means
     recent: Speed = field(default_factory=Speed)  # since then
     pace: Pace = field(default_factory=Pace)
     program: Any = None  # compiled
@@ -87,7 +86,7 @@ class Session:
 
     def resume(self) -> None:
         """Start from the newest sound checkpoint."""
-        self.state, self.gathered, self.record, notes = self.shelf.restore()
+        self.state, self.record, notes = self.shelf.restore()
         self.progress.update(self.step, {}, say=False)
         if not self.schedule.checkpoint_replay:
             self.loop.agent = replace(self.loop.agent, first_update=self.step)
@@ -115,9 +114,10 @@ class Session:
 
     def ask(self, number: int) -> None:
         """End the run after the current call, with a checkpoint; number: of the signal, or 0."""
+        if self.stop is None:
+            self.progress.note("stopping, with a checkpoint ...")
         self.stop = self.stop or number
         self.loop.cut_short()
-        self.progress.note("stopping, with a checkpoint ...")
 
     def run(self) -> None:
         """Advance to the end, or until `ask` was called; the last state is always saved."""
@@ -173,11 +173,11 @@ class Session:
         rows = sorted(episodes + ended, key=lambda row: (row["step"], row["learner"]))
         self.shelf.write(rows, self.wall_s)
         self._continue(bool(infinite))
-        self.gathered = records.appended(self.gathered, metrics)
+        self.record.sums = records.added(self.record.sums, metrics)
         if self.schedule.row_due(self.step, worlds):
             learners = len(self.loop.seeds)
-            means = records.means(self.gathered, learners, self.step, self.record.ends)
-            self.gathered = {}
+            means = records.means(self.record.sums, learners, self.step, self.record.ends)
+            self.record.sums = {}
             perf = {"perf/compile_s": self.compile_s} | self._speed(len(self.shelf.logs))
             self.shelf.write([row | perf for row in means], self.wall_s)
 
@@ -217,16 +217,19 @@ class Session:
 
     def _end(self, failures: Mapping[int, tuple[int, str]]) -> list[Row]:
         """A row for each learner that diverged just now; failures: learner -> (step, quantity)."""
-        new = new_ends(self.loop, self.record.ends, failures)
-        self.record.ends |= new
-        for s, end in new.items():
-            self.record.final_eval[s] = None
-            if self.left:  # else the error names it
-                self.progress.note(f"{_words(end)}; it ends here, the others continue")
-        return [
-            {"step": end["step"], "learner": s, "diverged": end["quantity"]}
-            for s, end in new.items()
-        ]
+        loop, rows = self.loop, []
+        for s, (step, quantity) in sorted(failures.items()):
+            if s in self.record.ends:
+                continue
+            end: End = {"seed": loop.seeds[s], "step": step, "quantity": quantity}
+            if numbers := loop.axis.names[s * loop.axis.count // len(loop.seeds)]:
+                end["of"] = numbers  # where there are others
+            self.record.ends[s], self.record.final_eval[s] = end, None
+            rows.append({"step": step, "learner": s, "diverged": quantity})
+        for row in rows if self.left else ():  # else the error names it
+            line = _words(self.record.ends[row["learner"]])
+            self.progress.note(f"{line}; it ends here, the others continue")
+        return rows
 
     def _continue(self, repair: bool) -> None:
         """Raise DivergenceError if no learner is left; `repair` those that have ended.
@@ -248,7 +251,7 @@ class Session:
         self._continue(True)
         now = replace(self.record, wall_s=self.wall_s)
         with self.progress.doing("saving"):
-            self.shelf.save(self.state, self.gathered, now)
+            self.shelf.save(self.state, now)
         self.saved = self.step, self.record.unevaluated
 
     def _show(self, scalars: Mapping[str, float], say: bool | None) -> None:
@@ -267,22 +270,6 @@ class Session:
             known = values and s not in self.record.ends
             means.append(float(np.mean(values)) if known else None)
         return means
-
-
-def new_ends(
-    loop: Loop, known: Mapping[int, End], failures: Mapping[int, tuple[int, str]]
-) -> dict[int, End]:
-    """The ends, by the learner's number, that are not yet `known`.
-
-    failures: learner -> (step, quantity).
-    """
-    new: dict[int, End] = {}
-    for s, (step, quantity) in sorted(failures.items()):
-        if s not in known:
-            new[s] = {"seed": loop.seeds[s], "step": step, "quantity": quantity}
-            if numbers := loop.axis.names[s * loop.axis.count // len(loop.seeds)]:
-                new[s]["of"] = numbers  # where there are others
-    return new
 
 
 def unsound(learners: Any, step: int) -> dict[int, tuple[int, str]]:

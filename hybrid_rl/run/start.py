@@ -20,7 +20,7 @@ from hybrid_rl.errors import MisfitError, UsageError
 from hybrid_rl.files import targets as parts
 from hybrid_rl.run import folder
 from hybrid_rl.run.checkpoints import checkpoint
-from hybrid_rl.run.checkpoints.store import concatenated, each_learner, read_part, with_capacity
+from hybrid_rl.run.checkpoints.store import concatenated, each_learner, read_parts
 from hybrid_rl.run.logs.records import flatten_keys
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings import words as overrides
@@ -114,7 +114,7 @@ def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:
     run = configuration.built(config)
     try:
         path, seeds = source / "checkpoints", _seeds(then)
-        step, state, notes = read_part(path, run.agent, seeds, "learners")
+        step, state, _, notes = read_parts(path, run.agent, seeds, ["learners"])
     except MisfitError as error:
         line = f"its parameters do not fit: {str(error).partition(': ')[2]}"
         raise UsageError(f"run={source}: {line}") from error
@@ -169,9 +169,7 @@ def _memory(
     same = _flat(then, "reward") == _flat(config, "reward")
     if not same and not _follows(agent.episode):
         return None, "reward differs"
-    path = source / "checkpoints"
-    sized = with_capacity(agent, checkpoint.meta(path)["capacity"])
-    state = read_part(path, sized, _seeds(then), "memory", step)[1]
+    state = read_parts(source / "checkpoints", agent, _seeds(then), ["memory"], step)[1]
     return state.memory, "" if same else RELABELLED
 
 

@@ -30,26 +30,18 @@ STEPS = 2**31  # decisions, fewer of which are counted
 SEEDS = 2**32  # distinct seeds of JAX's generator
 
 
-def check_words(config: DictConfig) -> None:
-    """Raise UsageError for a word that becomes a folder, or an override, and is no plain one."""
-    for key in ("task", "algo", "policy_learning"):
-        if not NAME.fullmatch(str(config.get(key))):
-            line = "must be letters, digits, _, . and -"
-            raise UsageError(f"{key}={printable(config[key])}: {line}")
-
-
 def check(config: DictConfig) -> None:
     """Raise UsageError for a value that no run accepts; parts check their own ranges."""
     for key in SECTIONS:
-        if not isinstance(config.get(key), DictConfig):
-            hint = f"; did you mean task={config.get(key)}?" if key == "env" else ""
-            raise UsageError(f"{key}={as_yaml(config.get(key))}: must be a group of keys{hint}")
-    if "_target_" not in config.env:
-        line = "must be a part, a group of keys with _target_"
-        raise UsageError(f"env={as_yaml(config.env)}: {line}")
+        if not isinstance(config[key], DictConfig):
+            hint = f"; did you mean task={config[key]}?" if key == "env" else ""
+            raise UsageError(f"{key}={as_yaml(config[key])}: must be a group of keys{hint}")
     values = OmegaConf.to_container(config)
     parts.check(values)
-    check_words(config)
+    for key in ("task", "algo", "policy_learning"):  # which become folders, or overrides
+        if not NAME.fullmatch(str(config.get(key))):
+            line = "must be letters, digits, _, . and -"
+            raise UsageError(f"{key}={printable(config[key])}: {line}")
     plans = TRUE_MODEL in {name for _, name in parts.targets(values)}
     if plans and issubclass(parts.part_class(config.env._target_), Unstepped):
         line = "plans on the true dynamics, and this task steps outside JAX; take one that learns"

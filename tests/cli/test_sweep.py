@@ -64,8 +64,8 @@ def test_a_failed_job_does_not_end_the_others(tmp_path, monkeypatch, capfd):
         ("algo=kle3,fourier_ergodic domain.low=[0,0] seed=-1", "to 4294967295 (job 0: algo=kle3)"),
         ("task=pendulum,halfcheetah algo=kle3", "task=halfcheetah: kle3 needs an analytic envir"),
         ("+sed=0,1 algo=sac", "sed: sac has no such key; did you mean seed? (job 0: sed=0)"),
-        ("seed=range(0,0)", "seed=range(0,0): has no values"),
-        ("seed=interval(0,1)", "seed=interval(0,1): a sweep has no ranges; list values"),
+        ("seed=range(0,0)", "seed=range(0,0): gives no values"),
+        ("seed=interval(0,1)", "seed=interval(0,1): gives no values; list them"),
     ],
 )
 def test_a_job_that_cannot_run_is_found_before_the_first(tmp_path, capfd, given, words):

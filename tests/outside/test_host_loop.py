@@ -220,7 +220,7 @@ def test_evaluations_have_environments_and_seeds_of_their_own():
     assert first.shape == (2, 3)
     assert len(np.unique(first)) == 6
     np.testing.assert_allclose(first, second)
-    assert evaluator(params, keys, lambda: True) is None
+    assert evaluator(params, keys, lambda made: True) is None
     assert len({seed_of(s, i) for s in range(9) for i in range(9)}) == 81
 
 

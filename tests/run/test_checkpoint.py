@@ -51,7 +51,7 @@ def test_a_named_step_is_taken(three):
     step, result, meta, _ = checkpoint.restore(three, state_at(0), step=20)
     assert (step, meta) == (20, {"offset": 20})
     assert_same(result, state_at(20))
-    with pytest.raises(CheckpointError, match=r"has no checkpoint 10; it has \[20, 30\]"):
+    with pytest.raises(CheckpointError, match="holds no checkpoint 10"):
         checkpoint.restore(three, state_at(0), step=10)
 
 

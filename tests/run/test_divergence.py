@@ -1,13 +1,10 @@
 """Whether a number that is not finite is the world's or that of learning."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
 from hybrid_rl.run import session
 from hybrid_rl.run.logs import records
-from hybrid_rl.training.loop import Axis
 
 WORLDS = 2
 
@@ -25,8 +22,8 @@ def test_what_failed_first_or_acted_is_to_blame(infinite, step, quantity):
     metrics = {name: np.zeros((5, 1)) for name in ("sac/q", "world/action", "world/reward")}
     for name, at in infinite.items():
         metrics[name][at:] = np.inf
-    loop = SimpleNamespace(seeds=(3,), axis=Axis())
-    ends = [*session.new_ends(loop, {}, records.infinite(metrics, 0, WORLDS)).values()]
+    ((at, what),) = records.infinite(metrics, 0, WORLDS).values()
+    ends = [{"seed": 3, "step": at, "quantity": what}]
     line = f"seed 3, step {step}: {quantity} is not finite"
     assert session.failure_line(ends, 0, None) == f"{line}; there is no checkpoint"
     assert f"{line}; checkpoint 4 is intact: fix what" in session.failure_line(ends, 0, 4)

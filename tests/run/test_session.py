@@ -97,13 +97,17 @@ def test_a_call_ends_at_marks_and_where_decisions_change():
     ]
 
 
-def test_metrics_in_parts_are_the_metrics_as_one():
+def test_sums_in_parts_are_the_sums_as_one():
     values = np.random.default_rng(0).normal(size=(50, 3)).astype(np.float32)
-    got = {}
+    values[3:20, 1], values[:, 2] = np.nan, np.nan
+    whole, got = records.added({}, {"b": values}), {}
     for cut in np.split(values, [7, 8, 31]):
-        got = records.appended(got, {"b": cut, "a": -cut, "episode/done": cut})
+        got = records.added(got, {"b": cut, "a": -cut, "episode/done": cut})
     assert list(got) == ["b", "a"]
-    assert got["b"].tobytes() == values.tobytes()
+    assert got["b"].tobytes() == whole["b"].tobytes()
+    rows = records.means(got, 3, 50)
+    np.testing.assert_allclose([row["b"] for row in rows[:2]], np.nanmean(values[:, :2], 0), 1e-6)
+    assert rows[2] == {"step": 50, "learner": 2}
 
 
 def test_a_run_stopped_anywhere_goes_on_bit_for_bit(whole, short, tmp_path, capsys):

@@ -20,6 +20,7 @@ import os
 import re
 import secrets
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,7 @@ from hybrid_rl.files.atomic import own_folder, sync
 from hybrid_rl.run.checkpoints import leaves
 from hybrid_rl.types import PyTree
 
+Like = PyTree | Callable[[dict[str, Any]], PyTree]  # what is read, perhaps by the meta
 MANIFEST = "manifest.json"
 KEEP = 2  # complete checkpoints
 NAME = re.compile(r"(\d+)|\.(\d+)\.replaced\.\w+\.tmp")  # of a finished checkpoint
@@ -89,22 +91,19 @@ def save(folder: Path, step: int, state: PyTree, meta: dict, keep: int = KEEP) -
 
 
 def restore(
-    folder: Path, like: PyTree, step: int | None = None
+    folder: Path, like: Like, step: int | None = None
 ) -> tuple[int, PyTree, dict, list[str]]:
     """The newest sound checkpoint, or the one at `step`: (step, state, meta, notes).
 
-    `like` gives the structure, shapes and dtypes (arrays, or what `jax.eval_shape`
-    returns), of all leaves or of some; they are arrays on the default device. notes: one line for
-    each checkpoint that was skipped. Another process may write checkpoints to `folder` and delete
-    older ones meanwhile.
+    `like`, or `like(meta)`, gives the structure, shapes and dtypes (arrays, or what
+    `jax.eval_shape` returns), of all leaves or of some; they are arrays on the default device.
+    notes: one line for each checkpoint that was skipped. Another process may write checkpoints to
+    `folder` and delete older ones meanwhile.
     """
     while True:
         checkpoints = _finished(folder)
-        if step is not None and step not in checkpoints:
-            has = sorted(checkpoints) or "none"
-            raise CheckpointError(f"{folder} has no checkpoint {step}; it has {has}")
-        notes = []
-        for candidate in sorted(checkpoints, reverse=True) if step is None else [step]:
+        wanted, notes = {step} if step is not None else {*checkpoints}, []
+        for candidate in sorted(wanted & checkpoints.keys(), reverse=True):
             path = checkpoints[candidate]
             before = _identity(path)
             read, flaw = _attempt(path, like)
@@ -114,7 +113,8 @@ def restore(
                 return candidate, *read, notes
             notes.append(f"checkpoint {candidate} is skipped: {flaw}")
         else:
-            flaw = f"no sound checkpoint: {'; '.join(notes)}" if notes else "no checkpoint"
+            named = "checkpoint" if step is None else f"checkpoint {step}"
+            flaw = f"no sound checkpoint: {'; '.join(notes)}" if notes else f"no {named}"
             raise CheckpointError(f"{folder} holds {flaw}")
 
 
@@ -127,7 +127,7 @@ def _identity(path: Path) -> tuple[int, int, int] | None:
     return status.st_dev, status.st_ino, status.st_mtime_ns
 
 
-def _attempt(path: Path, like: PyTree) -> tuple[tuple[PyTree, dict] | None, str]:
+def _attempt(path: Path, like: Like) -> tuple[tuple[PyTree, dict] | None, str]:
     """State and meta of the checkpoint at `path`, or None and why it has none."""
     flaw = verify(path)
     if flaw is not None:

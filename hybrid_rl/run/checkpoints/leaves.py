@@ -13,6 +13,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 from urllib.parse import quote
 
 import jax
@@ -91,12 +92,13 @@ def write(path: Path, leaves: dict[str, np.ndarray]) -> None:
         raise OSError(f"Orbax left no state/{WRITTEN}")
 
 
-def read(path: Path, like: PyTree) -> tuple[PyTree, dict]:
-    """The leaves of `like` in a sound checkpoint, and its meta."""
+def read(path: Path, like: Any) -> tuple[PyTree, dict]:
+    """The leaves of `like`, or of `like(meta)`, in a sound checkpoint, and its meta."""
     import orbax.checkpoint as ocp  # 1 s
 
     meta = json.loads((path / "meta.json").read_text(encoding="utf-8"))
     kinds = json.loads((path / "leaves.json").read_text(encoding="utf-8"))
+    like = like(meta) if callable(like) else like
     wanted = dict(_named(like))
     _match(path, kinds, wanted)
     filled = {name: 0 for name in wanted if 0 not in kinds[name]["shape"]}

@@ -1,4 +1,4 @@
-"""The checkpoints of a run: the learners' state, its record, and the metrics since the last row."""
+"""The checkpoints of a run: the learners' state, and its record."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
@@ -13,9 +13,9 @@ from hybrid_rl.core.batching import join
 from hybrid_rl.errors import MisfitError
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.logs.log import RunLog
-from hybrid_rl.run.logs.records import Metrics, Row
+from hybrid_rl.run.logs.records import Row, Sums
 from hybrid_rl.run.schedule import Speed
-from hybrid_rl.training.agent import Agent
+from hybrid_rl.training.agent import Agent, AgentState
 from hybrid_rl.training.loop import Loop
 
 # {"seed", "step", "quantity"} of a learner that diverged; "of": its numbers, where a program has
@@ -31,32 +31,32 @@ class Record:
     final_eval: list[float | None]  # per learner: the latest
     step: int = 0  # decisions of each learner
     wall_s: float = 0.0  # [s] in earlier sessions; of a checkpoint: until then
+    sums: Sums = field(default_factory=dict)  # of metrics since the last row of means
     metrics_bytes: int = 0  # of a checkpoint: the size of metrics.jsonl then
     learning: Speed = field(default_factory=Speed)  # over all sessions
     unevaluated: bool = False  # an evaluation is due at `step`
     ends: dict[int, End] = field(default_factory=dict)  # of learners that diverged, by number
 
 
-def with_capacity(agent: Agent, capacity: int) -> Agent:
-    """The agent with a replay memory of that capacity."""
-    return replace(agent, replay=replace(agent.replay, capacity=capacity))
+def read_parts(
+    folder: Path, agent: Agent, seeds: Sequence[int], parts: Sequence[str], step: int | None = None
+) -> tuple[int, AgentState, dict[str, Any], list[str]]:
+    """(step, state [S, ...], meta, notes) of the newest sound checkpoint, or the one at `step`.
 
-
-def read_part(
-    folder: Path, agent: Agent, seeds: tuple[int, ...], part: str, step: int | None = None
-) -> tuple[int, Any, list[str]]:
-    """(step, AgentState [S, ...], notes) of the newest sound checkpoint, or the one at `step`.
-
-    part: the field of the state that is read; the others are None.
+    parts: the fields of the state that are read; the others are None. The memory has the capacity
+    that it had there. MisfitError for the learners of other seeds.
     """
-    saved = checkpoint.meta(folder).get("seeds", [*seeds])
-    if saved != [*seeds]:
-        has, wanted = (", ".join(map(str, each)) for each in (saved, seeds))
-        raise MisfitError(f"{folder} holds the learners of seed {has}, not of seed {wanted}")
-    like = Loop(agent, seeds, 1).shapes()
-    others = {field.name: None for field in fields(like) if field.name != part}
-    step, state, _, notes = checkpoint.restore(folder, like.replace(**others), step)
-    return step, state, notes
+
+    def like(meta: dict[str, Any]) -> Any:
+        if meta["seeds"] != [*seeds]:
+            has, wanted = (", ".join(map(str, each)) for each in (meta["seeds"], seeds))
+            raise MisfitError(f"{folder} holds the learners of seed {has}, not of seed {wanted}")
+        sized = replace(agent, replay=replace(agent.replay, capacity=meta["capacity"]))
+        shapes = Loop(sized, tuple(seeds), 1).shapes()
+        others = {field.name: None for field in fields(shapes) if field.name not in parts}
+        return shapes.replace(**others)
+
+    return checkpoint.restore(folder, like, step)
 
 
 def concatenated(states: Sequence[Any]) -> Any:
@@ -98,7 +98,7 @@ class Shelf:
                 seed = self.loop.seeds[row.pop("learner")]
                 log.write([{"step": row.pop("step"), "seed": seed} | row | {"wall_s": wall_s}])
 
-    def save(self, state: Any, gathered: Metrics, record: Record) -> None:
+    def save(self, state: Any, record: Record) -> None:
         """Write a checkpoint to each folder. state: [S, ...]."""
         sizes = [log.flush() for log in self.logs] or [0]
         each = zip(self.folders, self.settings, self.shares(), sizes, strict=True)
@@ -107,6 +107,7 @@ class Shelf:
                 record,
                 returns=record.returns[share],
                 final_eval=record.final_eval[share],
+                sums={name: values[:, share].tolist() for name, values in record.sums.items()},
                 metrics_bytes=size,
             )
             ends = [end for s, end in record.ends.items() if share.start <= s < share.stop]
@@ -115,20 +116,17 @@ class Shelf:
                 own = jax.tree.map(lambda leaf, at=share: leaf[at], state.replace(numbers={}))
             leaves = {each.name: getattr(own, each.name) for each in fields(own)}
             leaves |= {} if self.replay else {"memory": None}
-            parts = [np.asarray(m[:, share], np.float32) for m in gathered.values()]
-            leaves |= {"gathered": np.stack(parts)} if parts else {}
             meta = {
                 "seeds": list(self.loop.seeds[share]),
                 "capacity": self.loop.agent.replay.capacity,
                 "settings": dict(settings),
-                "gathered": {"names": [*gathered], "shape": np.shape(parts)},
                 "record": asdict(mine) | {"ends": ends},
             }
             checkpoint.save(folder, record.step, leaves, meta)
         self.newest = record.step
 
-    def restore(self) -> tuple[Any, Metrics, Record, list[str]]:
-        """(state [S, ...], metrics since the last row, record, notes).
+    def restore(self) -> tuple[Any, Record, list[str]]:
+        """(state [S, ...], record, notes).
 
         All from the newest sound checkpoints of one step; a kill may have left others.
         """
@@ -145,13 +143,15 @@ class Shelf:
             returns=[pairs for record in records for pairs in record.returns],
             final_eval=[value for record in records for value in record.final_eval],
             wall_s=max(record.wall_s for record in records),
+            sums={
+                name: np.concatenate([record.sums[name] for record in records], axis=1)
+                for name in records[0].sums
+            },
             unevaluated=any(record.unevaluated for record in records),
             learning=Speed(**metas[0]["record"]["learning"]),
             ends=ends,
         )
-        each = list(map(self._gathered, self.folders, metas))
-        gathered = {n: np.concatenate([part[n] for part in each], axis=1) for n in each[0]}
-        return self.loop.on_devices(state), gathered, whole, notes
+        return self.loop.on_devices(state), whole, notes
 
     def learner(self, number: int) -> Any:
         """AgentState [...] of one learner in the newest checkpoint, or else its first one."""
@@ -163,35 +163,17 @@ class Shelf:
 
         The memory is empty if checkpoints hold none.
         """
-        one = Loop(self.loop.agent, self.loop.seeds[self.shares()[0]], 1)
-        like = one.shapes().replace(memory=None)
-        read = [checkpoint.restore(folder, like, step) for folder in self.folders]
+        parts = [each.name for each in fields(AgentState) if each.name != "memory" or self.replay]
+        agent, seeds = self.loop.agent, self.loop.seeds[self.shares()[0]]
+        read = [read_parts(folder, agent, seeds, parts, step) for folder in self.folders]
         self.newest = min(reached for reached, *_ in read)
         for k, folder in enumerate(self.folders):
             if read[k][0] > self.newest:
-                read[k] = checkpoint.restore(folder, like, self.newest)
+                read[k] = read_parts(folder, agent, seeds, parts, self.newest)
         _, states, metas, notes = zip(*read, strict=True)
-        state = concatenated(states).replace(numbers=self.loop.numbers)
-        if self.replay:
-            memory = concatenated(list(map(self._memory, self.folders, metas)))
-        else:
-            memory = self.loop.init().memory
-        return state.replace(memory=memory), [*metas], [line for own in notes for line in own]
-
-    def _memory(self, folder: Path, meta: Mapping[str, Any]) -> Any:
-        """The replay memory [n, ...] in the newest checkpoint of a folder, in its size of now.
-
-        Extending a run may enlarge the memory.
-        """
-        agent, now = with_capacity(self.loop.agent, meta["capacity"]), self.loop.agent.replay
-        seeds = self.loop.seeds[self.shares()[0]]
-        memory = read_part(folder, agent, seeds, "memory", self.newest)[1].memory
-        return memory if meta["capacity"] == now.capacity else each_learner(now.resized, memory)
-
-    def _gathered(self, folder: Path, meta: Mapping[str, Any]) -> Metrics:
-        """The metrics in the newest checkpoint of a folder."""
-        if not (packed := meta["gathered"]).get("names"):
-            return {}
-        like = {"gathered": jax.ShapeDtypeStruct(tuple(packed["shape"]), np.float32)}
-        array = checkpoint.restore(folder, like, self.newest)[1]["gathered"]
-        return dict(zip(packed["names"], np.asarray(array), strict=True))
+        state, now = concatenated(states).replace(numbers=self.loop.numbers), self.loop.agent.replay
+        if not self.replay:
+            state = state.replace(memory=self.loop.init().memory)
+        elif metas[0]["capacity"] != now.capacity:  # a run that is extended may have a larger one
+            state = state.replace(memory=each_learner(now.resized, state.memory))
+        return state, [*metas], [line for own in notes for line in own]

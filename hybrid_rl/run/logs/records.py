@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 Metrics = dict[str, np.ndarray]
+Sums = dict[str, np.ndarray]  # name -> [2, S] sum and number of the values of each learner
 ACTION = "world/action"
 Row = dict[str, Any]
 COORDINATES = ("step", "seed", "wall_s")  # of a row; every other name but WORD is a metric
@@ -105,10 +106,21 @@ def arrays(value: Any) -> Any:
         return [arrays(each) for each in value]
 
 
-def appended(gathered: Metrics, metrics: Metrics) -> Metrics:
-    """The metrics since the last row of means with those of the next rounds, but `episode/...`."""
-    new = {name: m for name, m in metrics.items() if not name.startswith("episode/")}
-    return {n: np.concatenate([gathered[n], m]) for n, m in new.items()} if gathered else new
+def added(sums: Sums, metrics: Metrics) -> Sums:
+    """The sums since the last row of means with the next rounds, but of `episode/...`.
+
+    NaN is left out. One round is added after another, so the sums do not depend on where the calls
+    of the program end.
+    """
+    total = {}
+    for name, m in metrics.items():
+        if not name.startswith("episode/"):
+            known = ~np.isnan(m)
+            values = np.array((np.where(known, m, 0), known), np.float64)  # [2, rounds, S]
+            begun = sums.get(name, np.zeros_like(values[:, 0]))
+            both = np.concatenate((begun[:, None], values), axis=1)
+            total[name] = np.cumsum(both, axis=1)[:, -1]
+    return total
 
 
 def infinite(metrics: Metrics, start: int, worlds: int) -> dict[int, tuple[int, str]]:
@@ -154,8 +166,8 @@ def episodes(
     ]
 
 
-def means(metrics: Metrics, learners: int, end: int, ended: Container[int] = ()) -> list[Row]:
-    """A row of means per learner; NaN is left out, and a name with nothing else.
+def means(sums: Sums, learners: int, end: int, ended: Container[int] = ()) -> list[Row]:
+    """A row of means per learner, without names that have no values.
 
     ended: learners that diverged, which have no row.
     """
@@ -164,9 +176,7 @@ def means(metrics: Metrics, learners: int, end: int, ended: Container[int] = ())
         if s in ended:
             continue
         row: Row = {"step": end, "learner": s}
-        for name, values in metrics.items():
-            known = values[:, s][~np.isnan(values[:, s])]
-            if known.size:
-                row[name] = known.mean(dtype=np.float64)
+        own = {name: values[:, s] for name, values in sums.items()}
+        row |= {name: total / count for name, (total, count) in own.items() if count}
         averages.append(row)
     return averages

@@ -1,9 +1,7 @@
 """Settings of JAX for a process: compilation cache, precision, threads."""
 
 import os
-import sys
 from pathlib import Path
-from tempfile import TemporaryFile
 
 from omegaconf import DictConfig
 
@@ -30,22 +28,8 @@ def prepare(config: DictConfig) -> None:
     jax.config.update("jax_default_matmul_precision", "highest")  # of all but networks
     precision.choose(config.precision)
     if config.compile_cache is None or CACHE in os.environ:
-        return
-    if cache := cache_folder(str(config.compile_cache)):
-        jax.config.update("jax_compilation_cache_dir", str(cache))
-        jax.config.update("jax_compilation_cache_max_size", CACHE_BYTES)
-        jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.1)
-
-
-def cache_folder(compile_cache: str) -> Path | None:
-    """The folder of compiled programs; None, after a line on stderr, if it cannot be written."""
-    cache = Path(compile_cache).expanduser() / OURS
-    try:
-        cache.mkdir(parents=True, exist_ok=True)
-        with TemporaryFile(dir=cache):
-            pass
-    except OSError as error:
-        why = f"cannot be written to ({error.strerror}); programs are compiled again each time"
-        print(f"hybrid_rl: compile_cache={compile_cache}: {why}", file=sys.stderr, flush=True)
-        return None
-    return cache
+        return  # where it cannot be written, JAX warns, and compiles again each time
+    cache = Path(str(config.compile_cache)).expanduser() / OURS
+    jax.config.update("jax_compilation_cache_dir", str(cache))
+    jax.config.update("jax_compilation_cache_max_size", CACHE_BYTES)
+    jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.1)

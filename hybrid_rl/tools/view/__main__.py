@@ -139,7 +139,7 @@ def show(
 
 def main() -> None:
     """The command."""
-    given, changes = arguments.read(__doc__, ARGUMENTS, CHANGES)
+    given, changes = arguments.read(__doc__, ARGUMENTS, CHANGES, ("run", "policy", "task"))
     arguments.robot(given, changes)
     check_address(given["host"], given["port"])
     import_viser()
