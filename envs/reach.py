@@ -46,7 +46,7 @@ def motors(asset: str) -> int:
 @cache
 def tipped(robot: str) -> str:
     """MJCF text of a robot that has a site TIP."""
-    asset = simplified(robot)
+    asset = simplified(robot, free=False)
     model, spec = mjcf.load(asset), mjcf.spec(asset)
     body = int(model.jnt_bodyid[model.actuator_trnid[motors(asset) - 1, 0]])
     for child in range(body + 1, model.nbody):
@@ -72,7 +72,7 @@ class Reach(Body):
 
     @property
     def _asset(self) -> str:
-        return tipped(self.robot) if self.site == TIP else simplified(self.robot)
+        return tipped(self.robot) if self.site == TIP else simplified(self.robot, free=False)
 
     def reset(self, key: Array) -> EnvState:
         """The arm at home, and a pose to reach."""
