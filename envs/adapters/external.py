@@ -218,7 +218,7 @@ class Copies:
         except UsageError:
             raise
         except FAULTS as error:
-            line = blame(error)
+            line = f"{blame(error)}; {PICTURE}" if method == "render" else blame(error)
             late = isinstance(error, multiprocessing.TimeoutError)
             if late or (self.env.apart and isinstance(error, EOFError | ConnectionError)):
                 self._kill()

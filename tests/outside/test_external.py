@@ -112,6 +112,13 @@ def test_an_id_without_a_version_has_the_time_limit_of_the_newest():
         assert External(id="Pendulum").known.steps == 200
 
 
+def test_a_picture_of_an_environment_that_draws_none_is_one_line():
+    copies = counting().copies([0], STEPS)
+    copies.reset()
+    with pytest.raises(WorldError, match="render: NotImplementedError; for a video"):
+        copies.picture()
+
+
 def test_planning_on_the_environment_itself_is_refused():
     env = counting()
     with pytest.raises(UsageError, match="steps on the host"):
