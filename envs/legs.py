@@ -53,7 +53,7 @@ class Legs(Body):
 
     @property
     def _asset(self) -> str:
-        return simplified(self.robot)
+        return simplified(self.robot, free=True)
 
     def reset(self, key: Array) -> EnvState:
         """The robot at home, turned and pushed, with a command."""

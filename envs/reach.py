@@ -8,8 +8,9 @@ a': the one before. o = (q - q*, q' / 10, u - q, p* - p, e, a) [4m + 6]; q*: hom
 The pose is one of the tip with each joint within 1 rad of home. A decision is 0.02 s; never
 terminates. success: |p* - p| < 2 cm, |e| < 0.1.
 
-The tip is a site of the file, or the frame of the last body that the last servo of a hinge turns;
-servos after that one, of a gripper, stay as at home.
+The tip is a site of the file. Without one that is named, it is on the last body that the last servo
+of a hinge turns: its only site, else the frame of a hand that is fixed to the link, else the far
+end of the link. Servos after that one, of a gripper, stay as at home.
 """
 
 from functools import cache
@@ -24,7 +25,8 @@ from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.body import Body
 from hybrid_rl.envs.mujoco.kinematics import Chain, inverse, quat_multiply, rotation_vector
 from hybrid_rl.envs.mujoco.physics import PhysicsState
-from hybrid_rl.envs.mujoco.simplified import JOINT, TIMESTEP, servos, simplified
+from hybrid_rl.envs.mujoco.simplified import JOINT, TIMESTEP, located, servos, simplified
+from hybrid_rl.errors import UsageError
 from hybrid_rl.fields import part
 from hybrid_rl.types import EnvState, Spec
 
@@ -44,17 +46,35 @@ def motors(asset: str) -> int:
 
 
 @cache
-def tipped(robot: str) -> str:
-    """MJCF text of a robot that has a site TIP."""
-    asset = simplified(robot)
+def tipped(robot: str, site: str) -> str:
+    """MJCF text of a robot that has this site; TIP is added if its file has none of this name."""
+    asset = simplified(robot, free=False)
     model, spec = mjcf.load(asset), mjcf.spec(asset)
-    body = int(model.jnt_bodyid[model.actuator_trnid[motors(asset) - 1, 0]])
+    if site in (known := [each.name for each in spec.sites if each.name]):
+        return asset
+    if site != TIP:
+        raise UsageError(f"env.site={site}: choose one of {', '.join([TIP, *known])}")
+    link = body = int(model.jnt_bodyid[model.actuator_trnid[motors(asset) - 1, 0]])
     for child in range(body + 1, model.nbody):
         if model.body_parentid[child] == body and not model.body_jntnum[child]:
             body = child
-    spec.bodies[body].add_site(name=TIP)
+    ends = model.site_pos[model.site_bodyid == body]
+    if len(ends) != 1:
+        ends = faces(located(robot), body) if body == link else np.zeros((1, 3))
+    spec.bodies[body].add_site(name=TIP, pos=max(ends, key=np.linalg.norm))
     spec.compile()
     return spec.to_xml()
+
+
+def faces(asset: str, body: int) -> np.ndarray:
+    """The origin of a body, and the middles of the sides of the boxes around its geoms [n, 3]."""
+    model, turn, found = mjcf.load(asset), np.empty(9), [np.zeros((1, 3))]
+    for geom in np.flatnonzero(model.geom_bodyid == body):
+        mujoco.mju_quat2Mat(turn, model.geom_quat[geom])
+        centre, half = model.geom_aabb[geom].reshape(2, 3)
+        both = centre + np.concatenate((np.diag(half), -np.diag(half)))
+        found.append(model.geom_pos[geom] + both @ turn.reshape(3, 3).T)
+    return np.concatenate(found)
 
 
 @part
@@ -72,7 +92,7 @@ class Reach(Body):
 
     @property
     def _asset(self) -> str:
-        return tipped(self.robot) if self.site == TIP else simplified(self.robot)
+        return tipped(self.robot, self.site)
 
     def reset(self, key: Array) -> EnvState:
         """The arm at home, and a pose to reach."""
@@ -100,13 +120,12 @@ class Reach(Body):
     def scene(self) -> str:
         """MJCF text of the scene for rendering, with the pose to reach."""
         spec = mjcf.spec(self._asset)
-        body = spec.worldbody.add_body(name="target", mass=1, inertia=[1, 1, 1])
-        body.explicitinertial = True
+        solid = {"mass": 1, "inertia": [1, 1, 1], "explicitinertial": True}
+        body = spec.worldbody.add_body(name="target", **solid)
         body.add_freejoint()
         box, colour = mujoco.mjtGeom.mjGEOM_BOX, [0.95, 0.6, 0.15, 0.6]
         body.add_geom(type=box, size=[0.02, 0.03, 0.04], rgba=colour, contype=0, conaffinity=0)
-        for key in spec.keys:
-            spec.delete(key)
+        spec.delete(spec.keys[0])  # home, which has fewer joints
         spec.compile()
         return spec.to_xml()
 

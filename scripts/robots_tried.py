@@ -17,7 +17,7 @@ import numpy as np
 
 from hybrid_rl.envs.legs import Legs
 from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.envs.mujoco.simplified import FREE, simplified
+from hybrid_rl.envs.mujoco.simplified import FREE, located
 from hybrid_rl.envs.reach import Reach
 
 EPISODES, DECISIONS = 64, 100
@@ -25,9 +25,9 @@ EPISODES, DECISIONS = 64, 100
 
 def tried(file: str) -> dict[str, float]:
     """What is measured of the robot in a file."""
-    model = mjcf.load(simplified(file))
-    walks = bool(model.jnt_type[0] == FREE)
+    walks = FREE in mjcf.load(located(file)).jnt_type[:1]
     env = (Legs if walks else Reach)(robot=file, physics="native")
+    model = env._body.model
     state = jax.jit(jax.vmap(env.reset))(jax.random.split(jax.random.key(0), EPISODES))
     step, stands = jax.jit(jax.vmap(env.step)), np.ones(EPISODES, bool)
     for _ in range(DECISIONS):

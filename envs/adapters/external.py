@@ -28,7 +28,7 @@ from hybrid_rl.envs.adapters.unstepped import Made, import_named, registered
 from hybrid_rl.envs.trial import check
 from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame
 from hybrid_rl.fields import Positive, part
-from hybrid_rl.protocols.contract import of_user
+from hybrid_rl.protocols.contract import of_user, words
 from hybrid_rl.types import EnvState, Spec
 
 Numbers = np.ndarray | Array
@@ -38,12 +38,13 @@ ACTIONS = "they must be a Box with finite bounds, of one number or more"
 FORMS = "they must be numbers in a form that Gymnasium flattens: Box, Discrete, Dict, Tuple"
 PICTURE = "for a video, give it `def __init__(self, render_mode=None)` and a method `render` that "
 PICTURE += "returns a picture, an array [height, width, 3] of uint8"
+GIVES = {"reset": ("obs", "info"), "step": ("obs", "reward", "terminated", "truncated", "info")}
 DT = 'add env.dt=0.05, the seconds of a decision, or metadata = {"render_fps": 20} to its class'
 
 
 @part
 class External(Made):
-    """An environment that Gymnasium makes; to read its spaces one copy is made, and reset."""
+    """An environment that Gymnasium makes; one copy is made, reset and stepped, to know it."""
 
     id: str = ""  # in place of `make`
     dt: Positive | None = None  # [s] between decisions; None: what the environment says
@@ -217,7 +218,7 @@ class Copies:
         except UsageError:
             raise
         except FAULTS as error:
-            line = blame(error)
+            line = f"{blame(error)}; {PICTURE}" if method == "render" else blame(error)
             late = isinstance(error, multiprocessing.TimeoutError)
             if late or (self.env.apart and isinstance(error, EOFError | ConnectionError)):
                 self._kill()
@@ -269,17 +270,15 @@ def _known(env: External) -> Known:
     """What one copy declares."""
     try:
         one = env.one()
-        one.reset(seed=0)  # some declare their spaces there
+        if fault := _fault(one):
+            raise UsageError(f"{env.name}: {fault}")
     except UsageError:
         raise
     except FAULTS as error:
         key = "make" if env.make else "id"
         raise UsageError(f"env.{key}={env.name}: {blame(error)}") from error
     space, obs, seen = one.action_space, one.observation_space, one.env.observation_space
-    if not (isinstance(space, Box) and flatdim(space) and space.is_bounded()):
-        raise UsageError(f"{env.name}: has actions {space}; {ACTIONS}")
-    if not (isinstance(obs, Box) and np.prod(obs.shape) > 0):
-        raise UsageError(f"{env.name}: has observations {obs}; {FORMS}")
+    assert isinstance(space, Box)
     dt = env.dt or _time_step(env.name, one)
     limit = None
     if not env.make and one.spec is not None:
@@ -287,8 +286,24 @@ def _known(env: External) -> Known:
     elif one.has_wrapper_attr("_max_episode_steps"):
         limit = one.get_wrapper_attr("_max_episode_steps")  # of a TimeLimit
     one.close()
-    sizes = int(np.prod(obs.shape)), int(np.prod(space.shape))
-    return Known(Spec(*sizes, dt), limit, space, seen)
+    return Known(Spec(flatdim(obs), flatdim(space), dt), limit, space, seen)
+
+
+def _fault(one: gymnasium.Env) -> str:
+    """What its spaces, one reset and one step show to be wrong; empty: nothing."""
+    first = one.env.reset(seed=0)  # some declare their spaces there
+    space, obs, seen = one.action_space, one.observation_space, one.env.observation_space
+    if not (isinstance(space, Box) and flatdim(space) and space.is_bounded()):
+        return f"has actions {space}; {ACTIONS}"
+    if not (isinstance(obs, Box) and flatdim(obs)):
+        return f"has observations {seen}; {FORMS}"
+    action = (space.low / 2 + space.high / 2).astype(space.dtype)
+    for (method, must), given in zip(GIVES.items(), (first, one.env.step(action)), strict=True):
+        if not isinstance(given, tuple) or len(given) != len(must):
+            return f"{method}: returns {words(given)}; it must be ({', '.join(must)})"
+        if (size := np.asarray(flatten(seen, given[0])).size) != (needs := flatdim(obs)):
+            return f"{method}: returns obs of {size} numbers; its space has {needs}, {seen}"
+    return ""
 
 
 def _time_step(name: str, one: gymnasium.Env) -> float:

@@ -29,9 +29,8 @@ OFFSET = 0.5  # [rad] from its target at which a servo in place of a motor has i
 DAMPING = 0.02  # [s] its damping over its stiffness
 LEVEL = 0.01  # [m] of the feet, above the lowest one
 JOINT, FREE = mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtJoint.mjJNT_FREE
-CAPSULE, PLANE, MESH = (
-    getattr(mujoco.mjtGeom, f"mjGEOM_{name}") for name in ("CAPSULE", "PLANE", "MESH")
-)
+GEOM = mujoco.mjtGeom
+CAPSULE, PLANE, MESH = GEOM.mjGEOM_CAPSULE, GEOM.mjGEOM_PLANE, GEOM.mjGEOM_MESH
 
 
 class Servos(NamedTuple):
@@ -64,18 +63,17 @@ def located(robot: str) -> str:
     try:
         menagerie = import_module("mujoco_menagerie")
         found, cache = menagerie.get(robot), menagerie.Cache()
+        if cache.root is not None or cache.is_cached(found):
+            return str(found.xml(found.default_model))
+        line = f"is not on this machine; download it by `mujoco-menagerie prefetch {robot}`"
     except (ImportError, LookupError) as error:
-        line = f"robot={robot}: {error}; give a file, or a robot of MuJoCo Menagerie"
-        raise UsageError(f"{line} ({install('menagerie')})") from error
-    if cache.root is None and not cache.is_cached(found):
-        line = "is not on this machine; download it by `mujoco-menagerie prefetch"
-        raise UsageError(f"robot={robot}: {line} {robot}`")
-    return str(found.xml(found.default_model))
+        line = f"{error}; give a file, or a robot of MuJoCo Menagerie ({install('menagerie')})"
+    raise UsageError(f"env.robot={robot}: {line}")
 
 
 @cache
-def simplified(robot: str) -> str:
-    """MJCF text of a robot."""
+def simplified(robot: str, free: bool) -> str:
+    """MJCF text of a robot; free: whether its base is, else it is fixed to the world."""
     spec = mjcf.spec(located(robot))
     for geom in spec.geoms:
         if geom.parent == spec.worldbody:
@@ -84,8 +82,11 @@ def simplified(robot: str) -> str:
             geom.type = CAPSULE  # fitted to the mesh
     spec.worldbody.add_geom(name="floor", type=PLANE, size=[0, 0, 1], material="", contype=1)
     model = spec.compile()
+    if (FREE in model.jnt_type[:1]) != free or not model.nu:
+        base = "a free base, <freejoint/>," if free else "a fixed base"
+        raise UsageError(f"env.robot={robot}: must have {base} and motors")
     data, feet = _home(model), np.zeros(model.ngeom, bool)
-    if model.jnt_type[0] == FREE:
+    if free:
         high = [mujoco.mj_geomDistance(model, data, 0, i, 1e3, None) for i in range(model.ngeom)]
         low = np.where(model.geom_contype | model.geom_conaffinity, high, np.inf)[1:]
         feet[1:] = low < low.min() + LEVEL
@@ -102,9 +103,8 @@ def simplified(robot: str) -> str:
         _draw(spec, model, geom, i, bool(feet[i]))
     for material in spec.materials:
         material.textures = [""] * len(material.textures)
-    for some in (spec.meshes, spec.textures, spec.sensors, spec.keys, spec.pairs):
-        for element in some:
-            spec.delete(element)
+    for element in [*spec.meshes, *spec.textures, *spec.sensors, *spec.keys, *spec.pairs]:
+        spec.delete(element)
     _set_scene(spec, model.stat.extent)
     spec.add_key(name="home", qpos=data.qpos, ctrl=held)
     spec.compile()
@@ -129,9 +129,10 @@ def _serve(spec: mujoco.MjSpec, model: mujoco.MjModel, actuator: mujoco.MjsActua
     """Make a position servo of an actuator that moves a joint by its torque."""
     i = actuator.id
     joint, gear = model.actuator_trnid[i, 0], abs(model.actuator_gear[i, 0])
-    ranges = [gear * abs(model.actuator_gainprm[i, 0]) * model.actuator_ctrlrange[i, 1]]
-    ranges += [gear * model.actuator_forcerange[i, 1], model.jnt_actfrcrange[joint, 1]]
-    most = min(each for each in ranges if each > 0)
+    torque = gear * abs(model.actuator_gainprm[i, 0])  # at control 1, the limit if there is none
+    ranges = [torque * model.actuator_ctrlrange[i, 1], gear * model.actuator_forcerange[i, 1]]
+    ranges += [model.jnt_actfrcrange[joint, 1]]
+    most = min((each for each in ranges if each > 0), default=torque)
     actuator.set_to_position(kp=most / OFFSET)
     actuator.gear, actuator.forcerange, actuator.forcelimited = [1, 0, 0, 0, 0, 0], [-most, most], 1
     actuator.ctrlrange, actuator.ctrllimited = model.jnt_range[joint], model.jnt_limited[joint]

@@ -60,7 +60,7 @@ def env():
 
 
 def test_a_file_is_reduced_to_bodies_servos_feet_and_a_floor():
-    given, model = mujoco.MjModel.from_xml_string(TABLE), mjcf.load(simplified(TABLE))
+    given, model = mujoco.MjModel.from_xml_string(TABLE), mjcf.load(simplified(TABLE, True))
     for name in ("body_mass", "body_inertia", "body_ipos", "jnt_range", "body_pos"):
         np.testing.assert_allclose(getattr(model, name), getattr(given, name), atol=1e-5)
     assert (model.nmesh, model.nsensor, model.nkey, model.npair) == (0, 0, 1, 0)
@@ -75,7 +75,16 @@ def test_a_file_is_reduced_to_bodies_servos_feet_and_a_floor():
     mujoco.mj_forward(model, data)
     np.testing.assert_allclose([data.geom(name).xpos[2] for name in touching], 0.03, atol=1e-5)
     assert data.qpos[2] == pytest.approx(0.2 * np.cos(0.5) * 2 + 0.03, abs=1e-5)
-    assert mjcf.load(simplified(simplified(TABLE))).body_mass == pytest.approx(model.body_mass)
+    again = mjcf.load(simplified(simplified(TABLE, True), True))
+    assert again.body_mass == pytest.approx(model.body_mass)
+    without = mjcf.load(simplified(TABLE.replace('ctrlrange="-4 4"', ""), True))  # a limit
+    np.testing.assert_allclose(without.actuator_forcerange[:2], [[-5, 5], [-10, 10]])
+
+
+def test_a_robot_without_a_free_base_or_motors_is_one_line():
+    for robot in ("panda.xml", TABLE.replace(MOTORS, "")):
+        with pytest.raises(UsageError, match="must have a free base, <freejoint/>, and motors"):
+            Legs(robot=robot)
 
 
 def test_a_name_is_a_robot_of_the_menagerie_which_is_never_downloaded(tmp_path, monkeypatch):

@@ -9,6 +9,7 @@ from worlds import jitted
 
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.reach import STRIDE, Reach
+from hybrid_rl.errors import UsageError
 from hybrid_rl.types import Spec
 
 ARM = """<mujoco>
@@ -20,7 +21,7 @@ ARM = """<mujoco>
       <body pos="0.3 0 0">
         <joint name="b" axis="0 1 0"/> <geom size="0.03" fromto="0 0 0 0.3 0 0" type="capsule"/>
         <body name="hand" pos="0.3 0 0">
-          <geom size="0.03"/> <site name="nail" pos="0.1 0 0"/>
+          <geom size="0.03"/> <site name="nail" pos="0.1 0 0"/> <site/>
           <body><joint name="grip" type="slide" range="0 0.1"/> <geom size="0.01"/></body>
         </body>
       </body>
@@ -38,14 +39,30 @@ def env():
     return Reach(robot=ARM, physics="native")
 
 
-def test_the_tip_is_where_the_last_hinge_ends_or_a_site_and_home_is_within_ranges(env):
+@pytest.mark.parametrize(
+    ("robot", "site", "tip"),
+    [
+        (ARM, "tip", 0.6),  # the frame of a hand
+        (ARM, "nail", 0.7),
+        (ARM.replace("nail", "tip"), "tip", 0.7),  # of the file
+        (ARM.replace("<site/>", ""), "tip", 0.7),  # the hand's only site
+        (ARM.replace('"hand" pos="0.3 0 0">', '"hand"><joint/>'), "tip", 0.63),  # the link's end
+    ],
+)
+def test_the_tip_is_a_site_or_the_end_of_the_last_link_and_home_is_within_ranges(robot, site, tip):
+    env = Reach(robot=robot, site=site)
+    model = mjcf.load(env._asset)
     assert env.spec == Spec(4 * 2 + 6, 2, 0.02)
-    for each, tip in ((env, 0.6), (Reach(robot=ARM, site="nail"), 0.7)):
-        model = mjcf.load(each._asset)
-        np.testing.assert_allclose(model.key_qpos[0], [1.1, 0, 0])
-        p, _ = each._tip(jnp.asarray(model.key_qpos[0], jnp.float32))
-        want = [tip * np.cos(1.1), tip * np.sin(1.1), 0.5]
-        np.testing.assert_allclose(p, want, atol=1e-6)
+    np.testing.assert_allclose(model.key_qpos[0], [1.1] + (model.nq - 1) * [0])
+    p, _ = env._tip(jnp.asarray(model.key_qpos[0], jnp.float32))
+    np.testing.assert_allclose(p, [tip * np.cos(1.1), tip * np.sin(1.1), 0.5], atol=1e-6)
+
+
+def test_a_site_that_is_not_there_and_a_free_base_are_one_line():
+    with pytest.raises(UsageError, match=r"env\.site=nosite: choose one of tip, nail"):
+        Reach(robot=ARM, site="nosite")
+    with pytest.raises(UsageError, match=r"robot=go1\.xml: must have a fixed base"):
+        Reach(robot="go1.xml")
 
 
 def test_servos_that_move_to_the_angles_of_the_pose_reach_it(env):

@@ -77,6 +77,10 @@ def test_a_time_limit_among_the_wrappers_is_that_of_the_episode():
     assert External(make=Odd).known.steps is None
 
 
+def other(**members: Any) -> dict[str, Any]:
+    return {"make": type("Other", (Count,), members)}
+
+
 @pytest.mark.parametrize(
     ("given", "line"),
     [
@@ -86,7 +90,9 @@ def test_a_time_limit_among_the_wrappers_is_that_of_the_episode():
         ({"make": Odd, "kwargs": {"actions": Box(-np.inf, 1, (1,))}}, "finite bounds"),
         ({"make": "nowhere:Env"}, "env.make=nowhere:Env: cannot be imported (No module named"),
         ({"make": Odd, "kwargs": {"obs": Box(-1, 1, (0,))}}, "they must be numbers in a form"),
-        ({"make": type("Timeless", (Count,), {"metadata": {}})}, "does not say its time step"),
+        (other(metadata={}), "does not say its time step"),
+        (other(_seen=lambda _: np.zeros(3)), "reset: returns obs of 3 numbers; its space has 2"),
+        (other(step=lambda *_: (0, 0, 0, {})), "step: returns a tuple of 4; it must be (obs,"),
     ],
 )
 def test_what_is_no_usable_environment_is_one_line(given, line):
@@ -98,6 +104,13 @@ def test_what_is_no_usable_environment_is_one_line(given, line):
 def test_an_id_without_a_version_has_the_time_limit_of_the_newest():
     with pytest.warns(UserWarning, match="latest versioned"):
         assert External(id="Pendulum").known.steps == 200
+
+
+def test_a_picture_of_an_environment_that_draws_none_is_one_line():
+    copies = counting().copies([0], STEPS)
+    copies.reset()
+    with pytest.raises(WorldError, match="render: NotImplementedError; for a video"):
+        copies.picture()
 
 
 def test_planning_on_the_environment_itself_is_refused():
