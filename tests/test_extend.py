@@ -221,7 +221,7 @@ def test_a_gymnasium_environment_trains_as_it_is(conf, tmp_path, monkeypatch):
     composed = train(
         conf, run, "task=gymnasium", "env.make=reach:Reach", "algo=sac", "episode.steps=4"
     )
-    assert (composed.task, composed.episode.steps) == ("reach_Reach", 4)
+    assert (composed.task, composed.env.id, composed.episode.steps) == ("reach_Reach", "", 4)
     assert evaluate.evaluate(load(run), episodes=2)["return"].shape == (1, 2)
 
 

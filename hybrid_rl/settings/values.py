@@ -32,7 +32,7 @@ SEEDS = 2**32  # distinct seeds of JAX's generator
 
 def check_words(config: DictConfig) -> None:
     """Raise UsageError for a word that becomes a folder, or an override, and is no plain one."""
-    for key in ("task", "algo", "policy_learning"):
+    for key in ("task", "algo"):
         if not NAME.fullmatch(str(config.get(key))):
             line = "must be letters, digits, _, . and -"
             raise UsageError(f"{key}={printable(config[key])}: {line}")
