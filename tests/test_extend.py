@@ -181,12 +181,12 @@ def test_a_planner_is_one_file(conf, tmp_path):
     """It trains by the files of the page and logs its metric; on the simulator it decides, too."""
     code, fields, method = blocks("A planner of your own", HOWTO)
     (tmp_path / "refit.py").write_text(code)
-    (conf / "controller").mkdir()
-    (conf / "controller" / "mine.yaml").write_text(fields)
+    (conf / "planner").mkdir()
+    (conf / "planner" / "mine.yaml").write_text(fields)
     (conf / "algo" / "mine.yaml").write_text(method)
     train(conf, tmp_path / "run", "task=pendulum", "mine.horizon=3", "algo=mine")
     assert '"planner/std"' in (tmp_path / "run" / "metrics.jsonl").read_text()
-    alone = "algo=mppi model=world +controller@mine=mine controllers.full=${mine} task=pendulum"
+    alone = "algo=mppi model=world +planner@mine=mine controllers.full=${mine} task=pendulum"
     agent = config.build(config.load([*alone.split(), "mine.horizon=3"], config_dir=conf)).agent
     metrics = jax.jit(lambda: agent.step(agent.init(jax.random.key(0)), jnp.int32(0))[1])()
     assert 0 < metrics["planner/std"] < 0.1  # 0.02; 0.3 to 0.4 where all plans are as good
@@ -221,7 +221,7 @@ def test_a_gymnasium_environment_trains_as_it_is(conf, tmp_path, monkeypatch):
     composed = train(
         conf, run, "task=gymnasium", "env.make=reach:Reach", "algo=sac", "episode.steps=4"
     )
-    assert (composed.task, composed.episode.steps) == ("reach_Reach", 4)
+    assert (composed.task, composed.env.id, composed.episode.steps) == ("reach_Reach", "", 4)
     assert evaluate.evaluate(load(run), episodes=2)["return"].shape == (1, 2)
 
 

@@ -248,7 +248,7 @@ def test_no_learner_goes_on_and_no_robot_moves_with_it(folder, capfd):
         assert "env.make=os:system: is no part" in line
 
 
-@pytest.mark.parametrize("key", ["task", "algo", "policy_learning"])
+@pytest.mark.parametrize("key", ["task", "algo"])
 @pytest.mark.parametrize("name", ["../../theirs/evil", "sac,ddpg", "a b", ".."])
 def test_a_run_chooses_no_file_of_others(folder, capfd, key, name):
     """For `train run=DIR` a word of it becomes an override."""

@@ -18,6 +18,8 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.rewards.network import RewardNetwork
 from hybrid_rl.run.retarget import aimed, retargeted
 from hybrid_rl.run.saved import Trained, load, read
+from hybrid_rl.settings import build
+from hybrid_rl.settings.groups import options
 from scripts import new_goals
 
 pytestmark = pytest.mark.turns(3)
@@ -91,6 +93,16 @@ def test_keys_of_the_planner_of_the_run_change_alone(known: Trained) -> None:
         retargeted(read("halfcheetah"), ["planner.horizon=2"])
 
 
+@pytest.mark.parametrize("name", options("planner"))
+def test_a_planner_has_one_name_and_one_key_in_training_and_after_it(known: Trained, name) -> None:
+    """Nothing of the method's own planner is left."""
+    words = [f"planner={name}", "planner.horizon=2"]
+    run = build.build(build.load(["task=cartpole", *METHOD, *words]))
+    one, other = run.controllers["full"], retargeted(known, words).controllers["full"]
+    assert {*run.config.planner} == {"_target_", *vars(one)}
+    assert (type(one), one.horizon, other.horizon) == (type(other), 2, 2)
+
+
 PUSH = """from dataclasses import dataclass
 import jax.numpy as jnp
 
@@ -106,14 +118,14 @@ def test_a_planner_of_the_users_is_checked_before_it_acts(known, tmp_path, monke
     """As before a run that trains: for its methods, and for what they return."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(tmp_path)
-    (tmp_path / "controller").mkdir()
+    (tmp_path / "planner").mkdir()
     gives = r"Push\.act: returned action float32\[2\]; it must be float32\[1\]"
     for name, more, words in (
         ("push", "", r"Push has no greedy; see protocols\.Controller"),
         ("push_on", "    def greedy(self): return self\n", gives),
     ):
         (tmp_path / f"{name}.py").write_text(PUSH + more)
-        (tmp_path / "controller" / "own.yaml").write_text(f"_target_: {name}.Push\n")
+        (tmp_path / "planner" / "own.yaml").write_text(f"_target_: {name}.Push\n")
         with pytest.raises(UsageError, match=rf"^{name}\.py:\d+: {words}"):
             retargeted(known, [*AT, "planner=own"], tmp_path)
 

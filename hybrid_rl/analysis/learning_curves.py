@@ -205,11 +205,11 @@ def draw(numbers: dict[str, Any]) -> "Figure":
     return plot(from_numbers(numbers), numbers["x"])
 
 
-def plot(drawn: Sequence[Curve], x: str = "step") -> "Figure":
+def plot(drawn: Sequence[Curve], x: str = "step", among: Sequence[str] = ()) -> "Figure":
     """One panel per task and metric; several metrics are rows if they fill the columns.
 
     Legends and the notes that name a curve are below and cover nothing. A line is thin where not
-    all seeds have a value.
+    all seeds have a value. among: the labels of several pictures that share their styles.
     """
     import matplotlib
 
@@ -217,7 +217,7 @@ def plot(drawn: Sequence[Curve], x: str = "step") -> "Figure":
     metrics, tasks = (list(dict.fromkeys(names)) for names in zip(*pairs, strict=True))
     wanted = [pair for pair in itertools.product(metrics, sorted(tasks)) if pair in pairs]
     each = [[c for c, own in zip(drawn, pairs, strict=True) if own == pair] for pair in wanted]
-    styles = style.line_styles([curve.label for curve in drawn])
+    styles = style.line_styles([*among, *(curve.label for curve in drawn)])
     across = _across(len(wanted), len(tasks) if len(metrics) > 1 else 0)
     down = math.ceil(len(wanted) / across)
     width, height = PANELS[across - 1]

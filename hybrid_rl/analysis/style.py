@@ -104,14 +104,17 @@ def blank(width: float, height: float) -> "Figure":
 def colours(labels: Iterable[str]) -> dict[str, str]:
     """The colour of each label of a picture.
 
-    A method has that of METHODS everywhere. Other labels have the colours that are left; one that
-    begins with another label has the same.
+    A method has that of METHODS, unless one before it there has it in this picture. Other labels
+    have the colours that are left; one that begins with another label has the same.
     """
     distinct = list(dict.fromkeys(labels))
     family = {each: beginning(each, METHODS) or beginning(each, distinct, min) for each in distinct}
-    taken = {METHODS[name] for name in family.values() if name in METHODS}
+    of_family: dict[str, str] = {}
+    for name in filter({*family.values()}.__contains__, METHODS):
+        if " " in name or METHODS[name] not in of_family.values():  # words name a part of a method
+            of_family[name] = METHODS[name]
+    taken = {*of_family.values()}
     spare = itertools.cycle([colour for colour in COLOURS if colour not in taken] or COLOURS)
-    of_family = dict(METHODS)
     for name in family.values():
         if name not in of_family:
             of_family[name] = next(spare)

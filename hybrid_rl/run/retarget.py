@@ -50,10 +50,10 @@ from hybrid_rl.training.loop import compile_lowered
 from hybrid_rl.types import Params
 
 GOALS = ("reward", "constraint", "planner", "imagine")  # arguments of commands
-PLANNERS = ("planner", "planner_alone")
+PLANNERS = ("planner", "model_planner")
 UNLEARNED = dict.fromkeys(("model", "reward_model", "policy"))  # where a run has none
 SOFT = ("world", "price", "chance", "width")  # of a constraint: not what it limits
-GROUPS = (*configuration.PAID, "imagine", "proposal")  # of conf/retarget.yaml
+GROUPS = (*GOALS, "proposal")  # of conf/retarget.yaml
 KEYS = (*configuration.PAID, *PLANNERS, "imagine")  # of conf/retarget.yaml, which a user may change
 
 
@@ -181,19 +181,18 @@ def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
     if own:  # the planner maximises that of the training
         goal.planner.objective = "${objective}"
         alone = "model_objective" if "model_objective" in config else "objective"
-        goal.planner_alone.objective = f"${{{alone}}}"
+        goal.model_planner.objective = f"${{{alone}}}"
     for name in configuration.PAID:
         goal[name] = goal[name] or config.get(name)
-    if own and _priced(config, goal.constraint):
-        for planner in (goal[name] for name in PLANNERS if "priced" in goal[name]):
-            planner.priced = True
+    for planner in (goal[name] for name in PLANNERS if "priced" in goal[name]):
+        planner.priced = own and _priced(config, goal.constraint)
     if "proposal" in config or "policy" not in config:
         del goal.proposal
     if not {"model", "reward_model"} <= {*config}:
         return OmegaConf.masked_copy(goal, [*configuration.PAID])
     if "policy" not in config:
         goal.pop("imagine", None)
-        goal.planner = goal.planner_alone
+        goal.planner = goal.model_planner
         goal.controllers = dict.fromkeys(("full", "planner"), "${planner}")
     return goal
 
@@ -215,12 +214,8 @@ def _priced(config: dict[Any, Any], limit: Any) -> bool:
 
 def _composed(overrides: Sequence[str], config_dir: str | Path | None) -> DictConfig:
     """conf/retarget.yaml with the overrides of a command."""
-    words = [f"controller@{text}" if text.split("=")[0] in PLANNERS else text for text in overrides]
-    words += [search_path(config_dir)] if config_dir else []
-    try:
-        found: Any = configuration.composed("retarget", forced(words, {*GROUPS, "controller"}))
-    except UsageError as error:
-        raise UsageError(re.sub(r"^controller(@planner)?=", "planner=", str(error))) from error
+    words = [*overrides, *([search_path(config_dir)] if config_dir else [])]
+    found: Any = configuration.composed("retarget", forced(words, GROUPS))
     return OmegaConf.create({**dict.fromkeys(configuration.PAID), **found})
 
 

@@ -46,6 +46,7 @@ READ = (  # the keys that a run reads, and with them all keys that they refer to
 )
 register(CONF)  # before Hydra composes anything
 OmegaConf.register_new_resolver("ratio", lambda a, b: a / b, replace=True)  # ${ratio:A,B}
+OmegaConf.register_new_resolver("pick", lambda key, of: of[key], replace=True)  # ${pick:A,{A: 1}}
 SENSED = "hybrid_rl.training.wrappers.Sensed"
 COMPOSING = Lock()  # Hydra composes in one thread at a time
 
@@ -136,7 +137,8 @@ def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
         values: dict[str, Any] = plain(config, resolve=True)
     except OmegaConfBaseException as error:
         raise UsageError(explain(error)) from error
-    values.pop("sweep", None)
+    for helper in ("sweep", "policy_learning"):
+        values.pop(helper, None)
     words = (text for text in overrides if not re.match(r"\+*(sweep|hydra)\.|-", text))
     values["recipe"] = [re.sub(r"\$\{([^}]*)\}", r"$(\1)", text) for text in words]  # no references
     values["random_steps"] = random_decisions(values, typed_values(overrides))

@@ -16,7 +16,6 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.files.targets import TARGET, part_class
 
 REFERENCE = re.compile(r"\$\{([\w.@]+)\}")  # an interpolation, which names a key
-INNER = re.compile(r"(?<=[\w.])\$\{([\w.]+)\}")  # within another one
 LACKING: Any = object()  # the value of a key that does not exist
 NAMES = {"world": "env"}  # field -> the key that it refers to, where its name is another
 CLASSES = {"episode": "hybrid_rl.training.episode.Episode"}  # of a section without a `_target_`
@@ -108,7 +107,7 @@ def _visit(
     listed = dict(enumerate(node)) if isinstance(node, list) else node
     for name, value in listed.items() if isinstance(listed, dict) else ():
         _visit(raw, f"{path}.{name}", value, read, fill)
-    for target in _targets(raw, node) if isinstance(node, str) else ():
+    for target in REFERENCE.findall(node) if isinstance(node, str) else ():
         at = source(raw, target)
         if fill and select(raw, at) is LACKING:  # perhaps a field that its part does not write
             above = at.rpartition(".")[0]
@@ -116,13 +115,6 @@ def _visit(
             if isinstance(holder, dict) and TARGET in holder:
                 _fill(raw, above, holder)
         _visit(raw, at, select(raw, at), read, fill)
-
-
-def _targets(raw: dict[str, Any], text: str) -> list[str]:
-    """The keys that a text refers to; ${a.${b}.c} refers to b and to a.B.c."""
-    found = REFERENCE.findall(text)
-    flat = INNER.sub(lambda inner: str(select(raw, inner[1])), text)
-    return found if flat == text else found + _targets(raw, flat)
 
 
 def _fill(raw: dict[str, Any], path: str, node: dict[str, Any]) -> None:

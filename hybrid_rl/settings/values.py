@@ -38,7 +38,7 @@ def check(config: DictConfig) -> None:
             raise UsageError(f"{key}={as_yaml(config[key])}: must be a group of keys{hint}")
     values = OmegaConf.to_container(config)
     parts.check(values)
-    for key in ("task", "algo", "policy_learning"):  # which become folders, or overrides
+    for key in ("task", "algo"):  # which become folders, or overrides
         if not NAME.fullmatch(str(config.get(key))):
             line = "must be letters, digits, _, . and -"
             raise UsageError(f"{key}={printable(config[key])}: {line}")

@@ -14,6 +14,7 @@ from hybrid_rl.analysis.style import (
     STROKES,
     STYLE,
     VERMILION,
+    beginning,
     colours,
     line_styles,
     words,
@@ -60,18 +61,22 @@ def test_no_two_lines_of_a_picture_share_colour_and_dashes():
 
 
 def test_a_method_has_one_colour_in_every_picture():
-    """Also beside others, and as a setting; a plain method has whole lines."""
+    """Also as a setting; of several whose colour is one, the first of METHODS has it."""
     for labels in label_sets():
-        own = colours(labels)
-        for label in labels:
-            if label in METHODS:
-                assert own[label] == METHODS[label], labels
-                style = line_styles(labels)[label]
-                assert style["color"] == METHODS[label]
+        own = {beginning(label, METHODS): colour for label, colour in colours(labels).items()}
+        first = {METHODS[name]: name for name in reversed(METHODS) if name in own}
+        assert {own[name]: name for name in first.values()} == first, labels
     styles = line_styles(["hybrid_stochastic tau=1", "sac", "hybrid_stochastic"])
     assert styles["hybrid_stochastic"]["linestyle"] == "-"
     assert styles["hybrid_stochastic tau=1"]["color"] == VERMILION
     assert styles["hybrid_stochastic tau=1"]["linestyle"] == "--"
+
+
+def test_methods_have_whole_lines_of_their_own_colours_while_there_are_colours():
+    every = [name for name in METHODS if " " not in name]
+    for seed in range(50):
+        some = list(np.random.default_rng(seed).choice(every, len(COLOURS), replace=False))
+        assert {*shown_by(line_styles(some), "color", "linestyle")} == {(c, "-") for c in COLOURS}
 
 
 @pytest.mark.parametrize(

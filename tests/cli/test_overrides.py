@@ -9,6 +9,7 @@ from omegaconf import OmegaConf
 from hybrid_rl.settings import build as config
 from hybrid_rl.settings import complete
 from hybrid_rl.settings import words as overrides
+from hybrid_rl.settings.groups import options
 
 RAW = {
     "steps": 3,
@@ -43,9 +44,10 @@ def test_what_is_left_is_what_is_read():
     assert kept["other"] == {"size": 2}
 
 
-def test_a_reference_within_another_is_followed():
-    raw = {"a": "${sizes.${kind}.batch}", "kind": "small", "sizes": {"small": {"batch": 3}}}
-    assert complete.complete(raw, ["a"]) == {"a": raw["a"], "kind": "small", "sizes": raw["sizes"]}
+@pytest.mark.parametrize("settings", options("settings"))
+def test_settings_leave_no_keys_that_only_other_keys_read(settings):
+    method = ["algo=hybrid_stochastic"]
+    assert {*config.load([*method, f"settings={settings}"])} <= {*config.load(method)}
 
 
 def test_a_part_has_the_fields_of_its_class_and_the_parts_of_their_names():

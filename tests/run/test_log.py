@@ -151,6 +151,25 @@ def test_a_line_comes_while_nothing_is_updated(capsys, monkeypatch):
     assert "ant sac  0/100 (0%)  compiling for 0:00:01" in capsys.readouterr().out
 
 
+def test_a_slow_call_has_few_lines(capsys, monkeypatch):
+    """Each pause is twice the last."""
+    seconds = iter(range(1000))
+    shown = Progress(100)
+    monkeypatch.setattr(time, "monotonic", lambda: now)
+    now = shown._began = 0.0
+
+    def wait(_):
+        nonlocal now
+        now = float(next(seconds))
+        return now > 119
+
+    monkeypatch.setattr(shown._ended, "wait", wait)
+    with shown.doing("compiling"):
+        shown._beat()
+    said = [line.split()[-1] for line in capsys.readouterr().out.splitlines()]
+    assert said == ["0:00:08", "0:00:24", "0:00:56"]
+
+
 def test_a_terminal_shows_a_bar():
     """In a pseudo-terminal of 60 columns, since nothing else is one."""
     code = (

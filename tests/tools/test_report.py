@@ -45,14 +45,14 @@ class Page(HTMLParser):
         return [text for name, text in self.texts if name == tag and text]
 
 
-def write(folder, algo="sac", rate=0.1, seeds=(0, 1), **summary):
+def write(folder, algo="sac", rate=0.1, seeds=(0, 1), last="planner/handed_over", **summary):
     """A run folder."""
     folder.mkdir(parents=True)
     rows = [
         {"step": step, "seed": seed, "wall_s": step / 10, name: 0.01 * step + seed}
         for step in (1000, 2000, 3000)
         for seed in seeds
-        for name in ("eval/return", "planner/handed_over")
+        for name in ("eval/return", last)
     ]
     (folder / "metrics.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
     (folder / "config.yaml").write_text(CONFIG.format(algo=algo, rate=rate))
@@ -116,6 +116,16 @@ def test_a_page_needs_no_other_file_and_its_names_are_unique(runs):
     assert {"var(--c0)", "var(--grid)"} <= {*re.findall(r"var\([^)]*\)", drawn)}
     assert not re.search(r"#[0-9a-f]{6}", drawn)
     assert "script" not in {tag for tag, _, _ in page.attributes}
+
+
+def test_a_method_has_one_colour_and_no_line_about_metrics_of_others(tmp_path):
+    write(tmp_path / "first")
+    write(tmp_path / "second", algo="ddpg", last="safety/limit")
+    text = report.page(hr.runs(str(tmp_path)))
+    alone = text.partition('aria-label="safety/limit hopper"')[2].partition("</svg>")[0]
+    assert "var(--c1)" in alone
+    assert "var(--c0)" not in alone
+    assert ": no " not in text
 
 
 def test_seeds_make_a_band_and_the_numbers_are_those_of_the_rows(runs):

@@ -16,7 +16,7 @@ from rich.progress import Progress as Bar
 from rich.text import Text
 
 PERIOD = 60.0  # [s] over which the speed is measured
-PAUSE = 8.0  # [s] between two plain lines
+PAUSE = 8.0  # [s] between two plain lines; each twice the last while nothing is updated
 SHOWN = {  # scalar -> its format
     "train/return": "return {:,.1f}",
     "eval/return": "eval {:,.1f}",
@@ -47,7 +47,7 @@ def ignore_closed_output() -> Iterator[None]:
 
 
 class Progress:
-    """Steps of `total`, the latest scalars, speed, time left; a line at least every 10 s.
+    """Steps of `total`, the latest scalars, speed, time left; a line every PAUSE.
 
     steady: the step from which the speed is representative; visible: false shows nothing.
 
@@ -71,6 +71,7 @@ class Progress:
         self._bar.add_task(label, total=total)
         (self._task,) = self._bar.tasks
         self._printed: float | None = None  # [s] latest plain line
+        self._pause = PAUSE  # [s] after it
         self._pending = False
         self._task_now: tuple[str, float] | None = None  # what is going on, since when [s]
         self._live: Live | None = None
@@ -106,7 +107,7 @@ class Progress:
         change(self._task.id, completed=step)
         if self._live is not None:
             return
-        self._pending, last = self.visible, self._printed
+        self._pending, self._pause, last = self.visible, PAUSE, self._printed
         if say or (say is None and (last is None or time.monotonic() - last >= PAUSE)):
             self._print()
 
@@ -129,10 +130,11 @@ class Progress:
                 say(text)
 
     def _beat(self) -> None:
-        """Print a plain line whenever the last one was PAUSE ago, also during a slow call."""
+        """Print a plain line after each pause, also during a slow call."""
         while not self._ended.wait(1.0):
-            if time.monotonic() - (self._printed or self._began) >= PAUSE:
+            if time.monotonic() - (self._printed or self._began) >= self._pause:
                 self._print()
+                self._pause *= 2
 
     def _print(self) -> None:
         """Print a plain line."""

@@ -154,15 +154,20 @@ def _drawn(folder: Path) -> dict[str, bytes]:
 def _curves(runs: Sequence[RunFolder]) -> list[tuple[str, str]]:
     """A section for each kind of metric: its panels, and a table of the last values."""
     sections, paths = [], [run.path for run in runs]
-    for title, names in panels.metrics(runs).items():
-        pairs = [pair for name in names for pair in panels.panels(paths, name)]
-        if not pairs:
-            continue
-        figures = "\n".join(f"<figure>{drawing}</figure>" for _, drawing in pairs)
-        drawn = [curve for some, _ in pairs for curve in some]
+    each = {
+        title: [some for name in names if (some := panels.found(paths, name))]
+        for title, names in panels.metrics(runs).items()
+    }
+    labels = sorted({curve.label for found in each.values() for some in found for curve in some})
+    for title, found in filter(lambda pair: pair[1], each.items()):
+        drawings = [drawing for some in found for drawing in panels.panels(some, labels)]
+        figures = "\n".join(f"<figure>{drawing}</figure>" for drawing in drawings)
+        drawn = [curve for some in found for curve in some]
         head = ("metric", "task", "method", "seeds", "last", "mean over the run")
         more = f"<summary>Numbers</summary>{table(head, map(_ends, drawn))}"
-        notes = dict.fromkeys(note for curve in drawn for note in curve.notes)
+        notes = dict.fromkeys(  # not that a metric is one of other methods
+            note for curve in drawn for note in curve.notes if f": no {curve.metric}" not in note
+        )
         lines = "".join(f'<p class="quiet">{html.escape(note)}</p>\n' for note in notes)
         text = f'<div class="panels">\n{figures}\n</div>\n{lines}<details>{more}</details>\n'
         sections.append((title, text))

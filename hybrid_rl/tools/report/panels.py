@@ -45,20 +45,29 @@ def metrics(runs: Sequence[RunFolder]) -> dict[str, list[str]]:
     return sections
 
 
-def panels(runs: Sequence[Path], metric: str) -> list[tuple[list[Curve], str]]:
-    """For each task its curves and their drawing, without notes; [] if no value is finite."""
+def found(runs: Sequence[Path], metric: str) -> list[Curve]:
+    """The curves of a metric; [] if no value is finite."""
     try:
-        drawn = curves(runs, metric)
+        return curves(runs, metric)
     except UsageError:
         return []
+
+
+def panels(drawn: Sequence[Curve], labels: Sequence[str]) -> list[str]:
+    """A drawing for each task of the curves of a metric, without notes.
+
+    labels: of all curves of the page.
+    """
     tasks = dict.fromkeys(curve.task for curve in drawn)
     each = [[curve for curve in drawn if curve.task == task] for task in tasks]
-    return [(some, svg(_panel(some, len(tasks)), f"{metric} {some[0].task}")) for some in each]
+    return [
+        svg(_panel(some, len(tasks), labels), f"{some[0].metric} {some[0].task}") for some in each
+    ]
 
 
-def _panel(drawn: Sequence[Curve], tasks: int) -> "Figure":
+def _panel(drawn: Sequence[Curve], tasks: int, labels: Sequence[str]) -> "Figure":
     """The curves of a task under the name of their metric, and of the task where there are more."""
-    figure = plot([replace(curve, notes=()) for curve in drawn])
+    figure = plot([replace(curve, notes=()) for curve in drawn], among=labels)
     axes = figure.axes[0]
     names = [axes.get_ylabel() or axes.get_xlabel(), axes.get_title()]
     axes.set_title(", ".join(names if tasks > 1 else names[:1]))
@@ -81,6 +90,6 @@ def svg(figure: "Figure", name: str) -> str:
     element = re.sub(r'(id="|#)([mp][0-9a-f]{10})\b', rf"\1{own}-\2", element)
     colours = {colour.lower(): f"var(--c{i})" for i, colour in enumerate(style.COLOURS[:-1])}
     colours |= {GRID: "var(--grid)"} | dict.fromkeys(INK, "currentColor")
-    for colour, name in colours.items():
-        element = element.replace(colour, name)
+    for colour, of_page in colours.items():
+        element = element.replace(colour, of_page)
     return f'<svg role="img" aria-label="{html.escape(name)}"{element}'
