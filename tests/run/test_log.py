@@ -166,8 +166,8 @@ def test_a_slow_call_has_few_lines(capsys, monkeypatch):
     monkeypatch.setattr(shown._ended, "wait", wait)
     with shown.doing("compiling"):
         shown._beat()
-    said = [line.split()[-1] for line in capsys.readouterr().out.splitlines()]
-    assert said == ["0:00:08", "0:00:24", "0:00:56"]
+    printed = [line.split()[-1] for line in capsys.readouterr().out.splitlines()]
+    assert printed == ["0:00:08", "0:00:24", "0:00:56"]
 
 
 def test_a_terminal_shows_a_bar():
