@@ -113,8 +113,7 @@ def colours(labels: Iterable[str]) -> dict[str, str]:
     for name in filter({*family.values()}.__contains__, METHODS):
         if " " in name or METHODS[name] not in of_family.values():  # words name a part of a method
             of_family[name] = METHODS[name]
-    taken = {*of_family.values()}
-    spare = itertools.cycle([colour for colour in COLOURS if colour not in taken] or COLOURS)
+    spare = itertools.cycle([each for each in COLOURS if each not in of_family.values()] or COLOURS)
     for name in family.values():
         if name not in of_family:
             of_family[name] = next(spare)

@@ -121,7 +121,7 @@ def read(config: DictConfig) -> DictConfig:
     raw = complete(raw, (*READ, "sweep"), [*typed, *settings_keys(hydra)])
     for path in typed:
         if select(raw, path) is LACKING:
-            raise UsageError(refusal(path, raw))
+            raise UsageError(refusal(path, raw, hydra.runtime.choices.get(path)))
     sources = (each.path for each in hydra.runtime.config_sources if each.schema == "file")
     mine = [path for path in sources if Path(path) != CONF]
     raw["config_dir"] = mine[0] if mine else None  # of the user's files
@@ -280,10 +280,13 @@ def _usage(config: DictConfig, who: str | None = None) -> Iterator[None]:
         if isinstance(node, DictConfig):  # policy_learner for learners.policy
             short = next((name for name, other in config.items() if other == node), part)
             error.path = f"{short}.{field}"
-        if not (field == "world" and error.lacks):
-            raise UsageError(error.line) from error
-        who = part if part in PAID else who or config.get("algo") or "this"
-        line = f"task={config.task}: {who} {error.must}; `python -m hybrid_rl.list` marks those"
+        line, method = error.line, config.get("algo") or "this"
+        if error.lacks == "learner":
+            chosen = [text for text in config.get("recipe", ()) if name(text) in ("planner", field)]
+            line = f"{chosen[-1]}: {method} learns no {field}" if chosen else line
+        elif field == "world" and error.lacks:
+            who = part if part in PAID else who or method
+            line = f"task={config.task}: {who} {error.must}; `python -m hybrid_rl.list` marks those"
         raise UsageError(line) from error
     except ValueError as error:
         raise UsageError(str(error)) from error

@@ -159,8 +159,11 @@ def _kept(node: Any, read: Mapping[str, Any], where: str = "") -> Any:
     return kept
 
 
-def refusal(path: str, raw: dict[str, Any]) -> str:
-    """The line about a typed key that a configuration lacks."""
+def refusal(path: str, raw: dict[str, Any], choice: str | None = None) -> str:
+    """The line about a typed key that a configuration lacks; choice: what it is to be, of conf/."""
+    if choice:
+        near = [f"; did you mean {path}@{key}={choice}?" for key in raw if key.endswith("_" + path)]
+        return f"{path}={choice}: {raw.get('algo')} has no {path}{''.join(near[:1])}"
     above, _, last = path.rpartition(".")
     group = select(raw, above) if above else None
     if isinstance(group, dict):

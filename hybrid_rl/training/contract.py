@@ -14,6 +14,7 @@ import jax.numpy as jnp
 from hybrid_rl.core import history, lifting
 from hybrid_rl.data.trained import SavedPolicy
 from hybrid_rl.errors import SourceOf
+from hybrid_rl.fields import FieldError
 from hybrid_rl.protocols import Controller, Features, Learner, Model, Objective, UniformLearner
 from hybrid_rl.protocols.contract import Contract, has_users, leaves, of_user, parts
 from hybrid_rl.types import Params, Spec
@@ -142,8 +143,7 @@ def check_parameters(whole: Any, learned: Mapping[str, Any], spec: Spec) -> None
         uses = "learns with" if callable(getattr(owner, "update", None)) else "acts by"
         line = f"{name}={type(part).__name__}: {type(owner).__name__} {uses} it"
         if needs and name not in learned:
-            line += f", and no learner of this method trains it; leave {name}= out, or choose"
-            raise ValueError(f"{line} a method that learns a {name}")
+            raise FieldError(owner, name, "no learner trains it", "learner")
         if of_user(owner) or of_user(part):
             continue
         for at in needs:

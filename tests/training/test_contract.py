@@ -196,13 +196,15 @@ def test_what_the_library_says_stays_as_it_is():
 
 def test_a_reward_without_a_learner_is_named_and_not_the_users_model():
     planner = SamplingController(Line(), PredictedReturn(RewardNetwork((4,))), NoiseProposal())
-    with pytest.raises(ValueError, match=r"^reward=RewardNetwork: PredictedReturn acts by it, and"):
+    with pytest.raises(
+        ValueError, match=r"^PredictedReturn: reward=RewardNetwork: no learner trains"
+    ):
         check(planner)
 
 
 def test_a_model_without_a_learner_is_named_in_a_planner_of_the_users_too():
     agent = hr.Agent(hr.Episode(Pendulum(), 20), Planner(), {}, Replay().within(9, 1))
-    with pytest.raises(ValueError, match=r"^model=Line: Planner acts by it, and no learner of"):
+    with pytest.raises(ValueError, match=r"^Planner: model=Line: no learner trains it"):
         agent.check()
 
 
