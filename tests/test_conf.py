@@ -6,10 +6,13 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+import jax
+import jax.numpy as jnp
 import pytest
 import small
 from hydra.utils import get_class, instantiate
 from omegaconf import DictConfig, OmegaConf
+from tiny import SMALL
 
 from hybrid_rl.controllers.gradient import GradientController
 from hybrid_rl.files import targets as parts
@@ -173,6 +176,33 @@ def test_the_planner_of_a_method_has_neither_policy_nor_critic(algo: str) -> Non
     assert thesis.horizon == 5
     if "proposal" in thesis:
         assert (thesis.samples, thesis.proposal.std) == (20, 0.3)
+
+
+@pytest.mark.parametrize("algo", ["hybrid_stochastic", "hybrid_deterministic"])
+def test_the_planner_of_a_method_does_not_depend_on_the_critic(algo: str) -> None:
+    """Its action is the same with other parameters of critic and policy; that of `full` is not."""
+    overrides = ["task=pendulum", f"algo={algo}", *SMALL, "model=gaussian", "model.hidden=[8]"]
+    if algo == "hybrid_stochastic":
+        overrides += ["model_planner.horizon=2", "model_planner.samples=3"]
+    else:
+        overrides += ["shooting_planner.horizon=2"]
+    run = config.build(config.load(overrides))
+    obs, init = (
+        jnp.array([1.0, 0.0, 0.1]),
+        jax.jit(lambda key: run.agent.params(run.agent.init(key))),
+    )
+    first, second = (init(jax.random.key(seed)) for seed in range(2))
+    others = first._replace(critic=second.critic, policy=second.policy)
+
+    def actions(mode: str) -> tuple[jax.Array, ...]:
+        controller, key = run.controllers[mode], jax.random.key(2)
+        act, start = jax.jit(controller.act), controller.init(run.agent.spec)
+        return tuple(act(params, start, obs, key)[0] for params in (first, others))
+
+    same, other = actions("planner")
+    assert (same == other).all()
+    same, other = actions("full")
+    assert (same != other).all()
 
 
 def test_the_root_has_few_slots() -> None:
