@@ -24,7 +24,6 @@ from hybrid_rl.run.logs.loggers import Begun, TensorBoard, WandB
 from hybrid_rl.types import Spec
 
 PACKAGE = Path(__file__).resolve().parents[1] / "hybrid_rl"
-ROW = {"step": 5, "seed": 0, "wall_s": 1.0, "eval/return": -3.0}
 WRITERS = ("run/**/*.py", "training/*.py", "robot.py")
 WRITERS += ("outside/*.py", "cli/sweep.py", "files/[alr]*.py")
 OPENS = r".+\.(write_text|write_bytes|touch|mk\w*dirs?|mkfifo|copy2|copyfile)|(.*\.)?(open|fdopen)"

@@ -120,18 +120,3 @@ def test_minutes_are_the_first_seconds_and_the_other_decisions_of_all_learners(r
     rule = next(line for line in TABLES.read_text().splitlines() if "    to 50,000: '(" in line)
     text = rule.partition("'")[2].rstrip("'").replace("{label}", "CrossQ")
     assert values.evaluated(text)[0] == pytest.approx(peers_picture.minutes(peer, at)[1])
-
-
-def test_every_method_is_in_each_of_its_panels(results):
-    peers, ours = results
-    panels = peers_picture.draw(peers, ours).axes
-    robot = peers_picture.ROBOT
-    methods = {"hybrid_stochastic": ours[robot], **peers[robot]}
-    del methods["env"]
-    for method, returns in methods.items():
-        name = peers_picture.SHOWN[method][0]
-        for axes in panels[: 1 if method in peers_picture.UNCLOCKED else 2]:
-            (line,) = [one for one in axes.lines if one.get_label() == name]
-            last = max(int(step) for step in returns if step.isdigit())
-            low, high = min(returns[str(last)]), max(returns[str(last)])
-            assert low < np.asarray(line.get_ydata())[-1] < high

@@ -212,12 +212,6 @@ def test_the_root_has_few_slots() -> None:
     assert len(slots) <= 18
 
 
-def test_two_copies_are_equal_by_value() -> None:
-    """The planner's model and the learner's are two equal objects."""
-    run = config.build(config.load(["task=pendulum", *SMALL]))
-    assert run.agent.learners["model"].model == run.agent.controller.model
-
-
 def test_a_planner_acts_without_a_file_of_a_method():
     given = ["task=pendulum", "+controller@mine=gradient", "controllers.full=${mine}"]
     run = config.build(config.load([*given, "mine.horizon=7"]))

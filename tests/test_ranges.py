@@ -55,7 +55,6 @@ from hybrid_rl.targets.mixture import Mixture
 from hybrid_rl.targets.policy_disagreement import PolicyDisagreement
 from hybrid_rl.targets.policy_information import PolicyInformation
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.types import Params
 
 ROOMS = "beliefs constraints controllers critics features learners models objectives policies"
 ROOMS += " proposals rewards schedules targets"
@@ -211,10 +210,6 @@ TOGETHER = [  # what is made, and how the line begins, behind the name of the pa
     # what only the sizes of a task, or the parameters of a run, can show
     (lambda: FisherInformation(Exact(POLE)).init(SPEC), "model=Exact: .*weights"),
     (lambda: InformationLearner(Exact(POLE)).init(KEY, SPEC), "model=Exact: .*weights"),
-    (
-        lambda: WeightedSum(TERMS, ONES, {"a": 0.9}).reward_to_go(Params(), None),
-        "needs constant weights",
-    ),
     (lambda: World(CART).step((), jnp.zeros(2), jnp.zeros(1)), "needs a planner that samples"),
     (lambda: Monomials((0, 4)).init(KEY, SPEC), r"coordinates=\[0, 4\]: .* entries 0 to 1"),
     (lambda: Monomials(terms=((0, 4),)).init(KEY, SPEC), r"terms=\[0, 4\]: "),

@@ -86,13 +86,6 @@ def test_a_full_disk_is_one_line_and_no_file(tmp_path, monkeypatch, name):
     assert [*tmp_path.iterdir()] == []
 
 
-def test_a_png_is_the_picture_halfway(tmp_path, draws):
-    out = drawing.draw(FIXED, positions(5), tmp_path / "a.png", 25, 64, 48)
-    np.testing.assert_array_equal(
-        iio.imread(out), next(drawing.frames(FIXED, positions(5)[2:3], 64, 48))
-    )
-
-
 @pytest.fixture
 def choosing(monkeypatch):
     """Decrees which backends work."""

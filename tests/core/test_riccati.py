@@ -14,8 +14,6 @@ from hybrid_rl.envs.analytic.no_dynamics import NoDynamics
 from hybrid_rl.envs.analytic.point_mass import PointMass
 from hybrid_rl.policies.regulator import Regulator
 
-WEIGHTS = (5.0, 50.0, 50.0, 20.0, 700.0, 700.0)
-
 
 def test_value_is_the_cost_of_the_regulator() -> None:
     """e' P e is the cost summed over a long time."""

@@ -23,7 +23,6 @@ from hybrid_rl.types import Params
 POLICY = TanhGaussian((8, 4), "sin", normalise=True)
 KEY = jax.random.key(4)
 PARAMS = POLICY.init(jax.random.key(3), Pendulum().spec)
-BIAS = "policy/trunk/params/Dense_0/bias"
 
 
 @pytest.fixture

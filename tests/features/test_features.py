@@ -2,11 +2,9 @@
 
 import jax.numpy as jnp
 import numpy as np
-import pytest
 from hydra.utils import instantiate
 from toys import begun
 
-from hybrid_rl.errors import UsageError
 from hybrid_rl.features.monomials import Monomials
 from hybrid_rl.features.network import Network
 from hybrid_rl.settings import build as config
@@ -62,10 +60,3 @@ def test_the_lift_of_sawyer_has_the_printed_functions() -> None:
     got = lifted(obs, "task=sawyer_torque", "algo=koopman_track", "features=sawyer")
     assert got.shape == (51,)
     np.testing.assert_allclose(got, expected, rtol=1e-5)
-
-
-def test_features_of_another_robot_are_refused() -> None:
-    """Sawyer has more coordinates than the ball."""
-    composed = config.load(["task=sprk_sand", "algo=koopman_track", "features=sawyer"])
-    with pytest.raises(UsageError, match=r"features\.coordinates=.*: .* entries 0 to 11"):
-        config.build(composed)

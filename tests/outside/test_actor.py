@@ -10,7 +10,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from counting import LINE, Counting, broken, lost, moved, of
+from counting import Counting, broken, lost, moved, of
 
 from hybrid_rl.envs.adapters.robot import PENDING
 from hybrid_rl.errors import WorldError
@@ -18,14 +18,7 @@ from hybrid_rl.outside import actor as actors
 from hybrid_rl.outside.actor import Actor
 from hybrid_rl.outside.robot_process import RobotProcess
 from hybrid_rl.outside.row_log import RowLog
-from hybrid_rl.settings import build as config
 from hybrid_rl.training.ahead import AheadState
-
-
-@pytest.fixture(scope="module")
-def agent():
-    """Soft actor-critic of small parts."""
-    return config.build(config.load(LINE)).agent
 
 
 def test_rows_are_decisions_in_order(agent, tmp_path):

@@ -22,12 +22,6 @@ from hybrid_rl.run.members import loop_of
 from hybrid_rl.settings import build as config
 
 
-@pytest.fixture(scope="module")
-def agent():
-    """Soft actor-critic of small parts."""
-    return config.build(config.load(LINE)).agent
-
-
 def test_the_learner_learns_from_the_rows(agent, tmp_path, monkeypatch):
     """Its memory is what the file holds; a gap ends the row before; a call may end early."""
     loop = loop_of(of(agent, broken(lost)), (0,), 20, tmp_path)

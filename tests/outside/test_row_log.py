@@ -30,12 +30,6 @@ def test_rows_are_read_as_they_were_written(log):
     assert log.read(3) is None
 
 
-def test_a_second_process_sees_new_rows(log, tmp_path):
-    other = RowLog(tmp_path / "rows", SPEC)
-    assert other.read(2)["number"] == 2
-    assert other.recover()["number"] == 2
-
-
 @pytest.mark.parametrize("cut", [1, 40])
 def test_a_torn_row_is_cut_off(log, tmp_path, cut):
     file = tmp_path / "rows"
@@ -71,10 +65,6 @@ def test_a_damaged_row_is_not_read(log, tmp_path):
     file.write_bytes(data)
     assert log.read(2) is None
     assert log.read(1) is not None
-
-
-def test_an_empty_file_has_no_last_row(tmp_path):
-    assert RowLog(tmp_path / "rows", SPEC).recover() is None
 
 
 def test_rows_of_another_kind_are_refused_and_stay(log, tmp_path):

@@ -46,3 +46,12 @@ def largest_file(folder):
     return max(
         (path for path in folder.rglob("*") if path.is_file()), key=lambda p: p.stat().st_size
     )
+
+
+def flip(folder):
+    """Change one byte in the middle of the largest file of a checkpoint; how it is named."""
+    path = largest_file(folder / "state")
+    data = bytearray(path.read_bytes())
+    data[len(data) // 2] ^= 1
+    path.write_bytes(data)
+    return "SHA-256 differs"

@@ -14,7 +14,7 @@ from contextlib import nullcontext
 import jax
 import jax.numpy as jnp
 import pytest
-from states import assert_same, largest_file, state_at
+from states import assert_same, flip, largest_file, state_at
 
 from hybrid_rl.errors import CheckpointError
 from hybrid_rl.run.checkpoints import checkpoint, leaves
@@ -65,14 +65,6 @@ def truncate(folder):
     path = largest_file(folder / "state")
     path.write_bytes(path.read_bytes()[:-1])
     return "bytes instead of"
-
-
-def flip(folder):
-    path = largest_file(folder / "state")
-    data = bytearray(path.read_bytes())
-    data[len(data) // 2] ^= 1
-    path.write_bytes(data)
-    return "SHA-256 differs"
 
 
 def endless(folder):

@@ -8,6 +8,7 @@ import jax
 import jax.numpy as jnp
 import programs
 import pytest
+from states import flip
 from tiny import TINY, call, call_train, contents, finished, only_line, refusal, summary_of
 
 from hybrid_rl import evaluate, export
@@ -22,17 +23,8 @@ from hybrid_rl.run.machine import memory
 trained = finished("algo=sac")  # a run that is done
 
 
-def harm(folder):
-    """Change one byte in the middle of the largest file."""
-    files = [path for path in folder.rglob("*") if path.is_file()]
-    largest = max(files, key=lambda path: path.stat().st_size)
-    data = bytearray(largest.read_bytes())
-    data[len(data) // 2] ^= 1
-    largest.write_bytes(data)
-
-
 def test_a_damaged_checkpoint_is_passed_over(copied, capfd):
-    harm(copied / "checkpoints" / "600")
+    flip(copied / "checkpoints" / "600")
     assert call(lambda: command.run(evaluate.main), f"run={copied}", "episodes=1") == 0
     assert "checkpoint 600 is skipped" in " ".join(capfd.readouterr().out.split())
     assert json.loads((copied / "evaluation_full.json").read_text())["step"] == 500
@@ -48,7 +40,7 @@ def test_a_damaged_checkpoint_is_passed_over(copied, capfd):
 
 def test_without_a_sound_checkpoint_nothing_is_done(copied, capfd):
     for step in (500, 600):
-        harm(copied / "checkpoints" / str(step))
+        flip(copied / "checkpoints" / str(step))
     before = contents(copied)
     assert "holds no sound checkpoint" in refusal(capfd, f"resume={copied}", code=1)
     assert "holds no sound checkpoint" in refusal(capfd, f"run={copied}", of=evaluate.main, code=1)

@@ -47,7 +47,6 @@ HARM = {  # what of config.yaml becomes what, and the words of the line
     "no text": ("(?s).+", "\udce9", "is not text (UTF-8)"),
     "empty": ("(?s).+", "", "is empty"),
     "a word": ("(?s).+", "hello", ""),
-    "no env": (r"(?m)^env:\n(  .*\n)*", "", "Missing key env"),
     "no physics": (r"(?m)^physics:.*\n", "", "Missing key physics"),
     "seeds": ("num_seeds: 2", "num_seeds: 7", "the learners of seed 0, 1, not of seed 0, 1, 2"),
     "seed": ("\nseed: 0\n", "\nseed: 1\n", "the learners of seed 0, 1, not of seed 1, 2"),
@@ -136,16 +135,6 @@ def test_a_folder_of_a_start_that_was_killed_is_taken_and_one_of_a_run_is_not(tm
     refused = pytest.raises(UsageError, match="holds a run already")
     with refused, run_folder.claim_folders([config]):
         pass
-
-
-def test_a_start_beside_a_run_that_has_just_begun_deletes_nothing_of_it(tmp_path):
-    config = load([*TINY, "algo=sac", f"run_dir={tmp_path / 'run'}"])
-    with run_folder.claim_folders([config]) as (folder,):
-        (folder / "metrics.jsonl").touch()
-        refused = pytest.raises(UsageError, match="is being written by process")
-        with refused, run_folder.claim_folders([config]):
-            pass
-        assert sorted(path.name for path in folder.iterdir()) == ["lock", "metrics.jsonl"]
 
 
 METHODS = {

@@ -38,6 +38,7 @@ def holder(tmp_path):
 
 def test_a_second_process_is_refused_and_names_the_first(holder, capfd):
     process, folder = holder
+    (folder / "metrics.jsonl").touch()  # of a run that has just begun
     before = contents(folder)
     assert call_train(*TINY, f"run_dir={folder}") == 2
     who = f"process {process.pid} on {socket.gethostname()}"

@@ -4,15 +4,12 @@ import sys
 from types import SimpleNamespace
 
 import pytest
+from test_log import row
 from tiny import refusal
 
 from hybrid_rl.run.logs.log import RunLog
 
 CONFIG = {"task": "ant", "algo": "sac", "logger": "wandb", "learners": {"policy": {"rate": 0.1}}}
-
-
-def row(step, seed=0, **scalars):
-    return {"step": step, "seed": seed, "wall_s": step / 2, **scalars}
 
 
 class Fake:
@@ -46,8 +43,8 @@ def test_each_seed_is_a_run_of_wandb_that_a_resumed_run_continues(tmp_path, wand
         with RunLog(tmp_path, [3, 4], CONFIG) as log:
             log.write([row(step, 3, a=0.5, diverged="x"), row(step, 4, a=float("inf"), b=2)])
     first, second, again, _ = wandb
-    assert first.logged == [(1, {"a": 0.5, "wall_s": 0.5})]
-    assert second.logged == [(1, {"b": 2, "wall_s": 0.5})]
+    assert first.logged == [(1, {"a": 0.5, "wall_s": 0.333})]
+    assert second.logged == [(1, {"b": 2, "wall_s": 0.333})]
     assert [run.given["config"]["seed"] for run in wandb] == [3, 4, 3, 4]
     assert first.given["config"]["learners"] == CONFIG["learners"]
     assert first.given["id"] == again.given["id"] != second.given["id"]

@@ -111,16 +111,6 @@ class Echo(Counter):
         return super().step(state, action).replace(obs=action)
 
 
-def test_actions_arrive_later() -> None:
-    """Two decisions later; until then they are 0."""
-    episode = Episode(Echo(), delay=0.2)
-    state, seen = episode.reset(jax.random.key(0)), []
-    for u in (1.0, 2.0, 3.0, 4.0):
-        state = episode.step(state, jnp.array([u]))
-        seen.append(float(state.obs[0]))
-    assert seen == [0, 0, 1, 2]
-
-
 def test_observations_have_noise_and_the_world_has_not() -> None:
     """Of the given standard deviation, new at each decision and in each episode."""
     keys = jax.random.split(jax.random.key(0), 2000)
