@@ -129,7 +129,7 @@ def _serve(spec: mujoco.MjSpec, model: mujoco.MjModel, actuator: mujoco.MjsActua
     """Make a position servo of an actuator that moves a joint by its torque."""
     i = actuator.id
     joint, gear = model.actuator_trnid[i, 0], abs(model.actuator_gear[i, 0])
-    torque = gear * abs(model.actuator_gainprm[i, 0])  # at control 1, the limit if there is none
+    torque = gear * abs(model.actuator_gainprm[i, 0])  # at control 1: the most without limits
     ranges = [torque * model.actuator_ctrlrange[i, 1], gear * model.actuator_forcerange[i, 1]]
     ranges += [model.jnt_actfrcrange[joint, 1]]
     most = min((each for each in ranges if each > 0), default=torque)

@@ -16,7 +16,7 @@ from rich.progress import Progress as Bar
 from rich.text import Text
 
 PERIOD = 60.0  # [s] over which the speed is measured
-PAUSE = 8.0  # [s] between two plain lines; each twice the last while nothing is updated
+PAUSE = 8.0  # [s] between two plain lines; in a slow call it doubles
 SHOWN = {  # scalar -> its format
     "train/return": "return {:,.1f}",
     "eval/return": "eval {:,.1f}",
@@ -47,7 +47,7 @@ def ignore_closed_output() -> Iterator[None]:
 
 
 class Progress:
-    """Steps of `total`, the latest scalars, speed, time left; a line every PAUSE.
+    """Steps of `total`, the latest scalars, speed, time left; a line every PAUSE or less often.
 
     steady: the step from which the speed is representative; visible: false shows nothing.
 
