@@ -20,7 +20,7 @@ ARGUMENTS = (
     Argument("file", "docs/results/late.json", "returns by robot and delay"),
     Argument("out", "late.png", "the picture"),
 )
-TITLES = {"halfcheetah": "half-cheetah, simulated", "hopper": "hopper, simulated"}
+TITLES = {"halfcheetah": "half-cheetah", "hopper": "hopper", "cartpole": "cartpole"}  # simulated
 EPISODE = 1000  # decisions of a half-cheetah in real time
 REAL = {  # run in real time -> its name, colour, decisions per second
     "halfcheetah, two cores each": ("20 Hz", "#000000", 20),
@@ -29,8 +29,8 @@ REAL = {  # run in real time -> its name, colour, decisions per second
     "halfcheetah, 30 Hz, 133 ms late": ("30 Hz, 66 ms each way", "#D55E00", 30),
 }
 SHOWN = {  # what ends the name of an arm -> its name, colour, mark
-    "": ("whole decisions, held back", "#000000", "o-"),
-    ", interpolated": ("parts of a decision, by a straight line", "#56B4E9", "s"),
+    "": ("predicted, held back", "#000000", "o-"),
+    ", past actions observed": ("past actions observed", "#56B4E9", "s"),
     ", not known": ("not known", "#D55E00", "^"),
 }
 
@@ -44,7 +44,7 @@ def draw(found: dict[str, Any]) -> Figure:
     """Interquartile mean and band of the seeds: of each robot by delay, and by minutes."""
     tasks = found["tasks"]
     with matplotlib.rc_context(STYLE):
-        picture = Figure(figsize=(12, 3.2), layout="constrained")
+        picture = Figure(figsize=(15, 3.2), layout="constrained")
         *panels, last = picture.subplots(1, 1 + len(TITLES))
         in_real_time(last, found["real time"])
         for axes, (task, title) in zip(panels, TITLES.items(), strict=True):

@@ -56,7 +56,7 @@ class Episode:
     delay: NotNegative = 0.0  # [s] until an action arrives
     jitter: NotNegative = 0.0  # [s] most that it is later than that; never before another
     loss: Fraction = 0.0  # probability that it never arrives: the last that did goes on acting
-    lag: NotNegative | None = None  # [s] that it knows; None: delay and jitter / 2
+    lag: NotNegative | None = None  # [s] that it knows; None: delay + jitter
     longest: NotNegative = 0.0  # [s] longest lag to be ready for, where it is swept
     sensor_noise: NotNegative | tuple[NotNegative, ...] = 0.0  # std of the observation, or [o]
     action_noise: NotNegative = 0.0  # [u] std of what is added to an action when it arrives
@@ -113,7 +113,7 @@ class Episode:
     @property
     def _lag(self) -> float:
         """Of known delay [s]."""
-        return self.delay + self.jitter / 2 if self.lag is None else self.lag
+        return self.delay + self.jitter if self.lag is None else self.lag
 
     @property
     def world(self) -> Env:

@@ -100,6 +100,17 @@ def test_jitter_and_loss_have_their_statistics():
     assert (got.acted != other.acted).any()
 
 
+def test_an_action_that_is_held_back_does_not_jitter():
+    """A robot releases it at a fixed time; one that arrives later acts when it arrives."""
+    env, T = Pendulum(), 400
+    ramp, dt = np.arange(T, dtype=np.float32)[:, None], env.spec.dt
+    for lag, soonest, latest in ((None, 2, 2), (0.9 * dt, 1, 1.5)):
+        late = Episode(env, 10 * T, delay=0.8 * dt, jitter=0.7 * dt, lag=lag)
+        past = ramp[5:, 0] - moved(late, ramp).clock.sent.acted[5:, 0]
+        assert past.min() == pytest.approx(soonest, abs=1e-3)
+        assert past.max() == pytest.approx(latest, abs=0.02)
+
+
 @pytest.mark.parametrize(
     ("algo", "given"),
     [
