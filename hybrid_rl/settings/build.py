@@ -33,7 +33,7 @@ from hybrid_rl.settings.values import (
     time_limit,
     whole,
 )
-from hybrid_rl.settings.words import forced, name, of_job, plain, raw_values, typed_values
+from hybrid_rl.settings.words import forced, name, of_job, plain, typed_values
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.history import acting as acting_in
@@ -114,7 +114,7 @@ def read(config: DictConfig) -> DictConfig:
     with open_dict(config):
         hydra = config.pop("hydra")
     complete_names(config, hydra)
-    raw = raw_values(config)
+    raw = plain(config)
     new = raw["resume"] is None
     typed = keys_of(of_job(hydra), hydra) if new else []
     # a part that lacks a key of `settings` keeps what it has
