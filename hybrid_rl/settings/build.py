@@ -136,7 +136,10 @@ def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
     try:
         values: dict[str, Any] = plain(config, resolve=True)
     except OmegaConfBaseException as error:
-        raise UsageError(explain(error)) from error
+        part, lacks = str(error.full_key).split(".")[0], re.findall("key '(.*)' not", str(error))
+        asks = [text for text in overrides if name(text) == part]
+        lines = [f"{text}: {config.algo} has no {key}" for text in asks for key in lacks]
+        raise UsageError([explain(error), *lines][-1]) from error
     for helper in ("sweep", "policy_learning"):
         values.pop(helper, None)
     words = (text for text in overrides if not re.match(r"\+*(sweep|hydra)\.|-", text))
