@@ -64,6 +64,11 @@ def expand_sweep(config: DictConfig, texts: Sequence[str]) -> list[Member]:
         if not numbers or not finite or len({*numbers}) < len(numbers):
             line = "must be a list of different numbers, such as [0.99,0.995]"
             raise UsageError(f"sweep.{key}={values}: {line}")
+    if len(delays := lists.get("episode.delay", ())) > 1:  # each in episodes ready for all
+        times = (config.episode[key] for key in ("jitter", "lag", "longest"))
+        jitter, lag, longest = (x if type(x) in (int, float) else 0 for x in times)
+        config.episode.longest = max(max(delays) + jitter, lag, longest)
+        texts.append(f"episode.longest={config.episode.longest}")
     members = []
     for values in product(*lists.values()):
         chosen = dict(zip(lists, values, strict=True))
