@@ -58,7 +58,7 @@ def test_a_failed_job_does_not_end_the_others(tmp_path, monkeypatch, capfd):
     ("given", "words"),
     [
         ("policy_learner.tau=0.005,3 algo=sac", "tau=3: must lie in (0, 1] (job 1: pol"),
-        ("algo=sac,scal", "algo=scal: unknown; choose one of the "),
+        ("algo=sac,scal", "algo=scal: unknown; choose one of those "),
         ("algo=kle3,sac explorer.horizon=3", "explorer.horizon: sac has no such key"),
         ("algo=sac,nn_mppi target=mixture", "Could not override 'target'"),
         ("algo=kle3,fourier_ergodic domain.low=[0,0] seed=-1", "to 4294967295 (job 0: algo=kle3)"),
