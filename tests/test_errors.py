@@ -127,6 +127,7 @@ def test_a_run_without_a_checkpoint_is_not_resumed_and_none_is_written_over(
 ):
     for line, words in (
         ([f"resume={folders['begun']}"], "holds no checkpoint yet"),
+        ([f"run={folders['begun']}"], "holds no checkpoint yet"),
         ([*TINY, f"run_dir={folders['trained']}"], "holds a run already; choose another, or res"),
         ([*TINY, f"run_dir={folders['begun']}"], "holds a run already; choose another, or res"),
     ):
@@ -160,19 +161,13 @@ def test_counts_are_whole_numbers(value):
             config.build(changed)
 
 
-def failing(error):
-    """A command that raises an error."""
-
-    def fail():
-        raise error
-
-    return call(lambda: command.run(fail))
-
-
 def test_memory_that_runs_out_is_one_line(capfd):
     """Where XLA itself finds out."""
-    text = "RESOURCE_EXHAUSTED: Out of memory allocating 12 bytes.\nand more"
-    assert failing(RuntimeError(text)) == 1
+
+    def fail():
+        raise RuntimeError("RESOURCE_EXHAUSTED: Out of memory allocating 12 bytes.\nand more")
+
+    assert call(lambda: command.run(fail)) == 1
     assert "allocating 12 bytes.; fewer num_seeds or num_envs" in only_line(capfd)
 
 

@@ -74,9 +74,7 @@ def test_every_one_says_what_it_is():
 
 
 def test_the_entries_of_ones_own_are_listed(conf, capsys):
-    (conf / "task" / "kettle.yaml").write_text(
-        "# Kettle: boils.\nenv:\n  _target_: kettle.Kettle\n"
-    )
+    (conf / "task" / "kettle.yaml").write_text("# Kettle: boils.\nenv: {_target_: kettle.Kettle}\n")
     assert show(f"config_dir={conf}") == 0
     blocks = capsys.readouterr().out.split("\n\n")
     head = {row.split()[0]: each.splitlines()[0] for each in blocks for row in each.split("\n  ")}

@@ -7,8 +7,9 @@ true in the new run, and imagined decisions only where nothing has changed.
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -114,12 +115,13 @@ def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:
     numbers = _numbers(config, then, source)
     run = configuration.built(config)
     try:
-        path, seeds = source / "checkpoints", _seeds(then)
-        step, state, _, notes = read_parts(path, run.agent, seeds, ["learners"])
+        seeds = range(then.seed, then.seed + then.num_seeds)
+        read = partial(read_parts, source / "checkpoints", run.agent, seeds)
+        step, state, _, notes = read(["learners"])
     except MisfitError as error:
         line = f"its parameters do not fit: {str(error).partition(': ')[2]}"
         raise UsageError(f"run={source}: {line}") from error
-    memory, why = _memory(run.agent, config, then, step, source)
+    memory, why = _memory(run.agent, config, then, partial(read, ["memory"], step))
     demonstrated, remembered = run.agent.replay.num_demonstrated(run.agent.num_envs), 0
     words = f"memory: {'the demonstrations alone' if demonstrated else 'empty'}, since {why}"
     if memory is not None:
@@ -158,9 +160,9 @@ def _flat(config: DictConfig, *names: str) -> dict[str, Any]:
 
 
 def _memory(
-    agent: Agent, config: DictConfig, then: DictConfig, step: int, source: Path
+    agent: Agent, config: DictConfig, then: DictConfig, read: Callable[[], tuple[Any, ...]]
 ) -> tuple[Any, str]:
-    """The memory [S', ...] in checkpoint `step` if it is true in the new run, and a word on it."""
+    """The memory [S', ...] of what `read` reads if it is true in the new run, and a word on it."""
     before, now = (_flat(made, *WORLD) for made in (then, config))
     differ = [key for key in {**before, **now} if before.get(key) != now.get(key)]
     if differ := [key for key in differ if key not in PASSING]:
@@ -170,13 +172,7 @@ def _memory(
     same = _flat(then, "reward") == _flat(config, "reward")
     if not same and not _follows(agent.episode):
         return None, "reward differs"
-    state = read_parts(source / "checkpoints", agent, _seeds(then), ["memory"], step)[1]
-    return state.memory, "" if same else RELABELLED
-
-
-def _seeds(config: DictConfig) -> tuple[int, ...]:
-    """The seeds [S'] of the run that has this configuration."""
-    return tuple(range(config.seed, config.seed + config.num_seeds))
+    return read()[1].memory, "" if same else RELABELLED
 
 
 def _follows(episode: Episode) -> bool:

@@ -115,8 +115,7 @@ def read(config: DictConfig) -> DictConfig:
         hydra = config.pop("hydra")
     complete_names(config, hydra)
     raw = plain(config)
-    new = raw["resume"] is None
-    typed = keys_of(of_job(hydra), hydra) if new else []
+    typed = keys_of(of_job(hydra), hydra) if raw["resume"] is None else []
     # a part that lacks a key of `settings` keeps what it has
     raw = complete(raw, (*READ, "sweep"), [*typed, *settings_keys(hydra)])
     for path in typed:

@@ -26,9 +26,8 @@ RAW = {
 
 def test_what_is_read_is_followed_through_references():
     read = complete.keys(deepcopy(RAW), ["loop"])
-    assert {"chosen.inner.gain", "chosen.size", "other.size", "name", "listed", "steps"} <= set(
-        read
-    )
+    followed = {"chosen.inner.gain", "chosen.size", "other.size", "name", "listed", "steps"}
+    assert followed <= {*read}
     assert not {"other", "other.gain", "idle", "idle.size"} & set(read)
 
 
@@ -60,6 +59,8 @@ def test_a_part_has_the_fields_of_its_class_and_the_parts_of_their_names():
 def test_python_refuses_what_the_command_refuses():
     with pytest.raises(config.UsageError, match=r"planner\.horizon: sac has no such key"):
         config.load(["algo=sac", "planner.horizon=7"])
+    with pytest.raises(config.UsageError, match="run=nowhere: only the command"):
+        config.load(["run=nowhere"])
     assert "planner" not in config.load(["algo=sac", "experiment=thesis/fig_3_2_pendulum"])
 
 

@@ -228,12 +228,3 @@ def test_where_a_run_wrote_to_is_no_word_of_the_next_one(tmp_path):
     folder.write(tmp_path, config_of)
     (made,) = members.load([f"run={tmp_path}"])
     assert (made.config.task, made.config.run_dir) == ("pendulum", None)
-
-
-def test_a_run_without_a_checkpoint_is_one_line(source, tmp_path, monkeypatch, capfd):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "begun").mkdir()
-    shutil.copy(source / "config.yaml", tmp_path / "begun")
-    assert "run=begun: holds no checkpoint yet" in refusal(capfd, "run=begun")
-    with pytest.raises(UsageError, match="run=nowhere: only the command"):
-        config.load(["run=nowhere"])
