@@ -4,6 +4,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from scipy.stats import norm
 from toys import begun
 
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
@@ -32,6 +33,23 @@ def test_samples_are_squashed_normal_and_have_its_density(policy: TanhGaussian) 
     assert float(log_prob[0]) == pytest.approx(wanted, abs=1e-3)
     assert float(policy.log_prob(params, x, u[0])) == pytest.approx(wanted, abs=1e-3)
     assert (np.abs(policy.mean(params, x)) < 1).all()
+
+
+def test_an_action_at_its_bound_has_the_probability_to_be_there() -> None:
+    """float32 does not know its z, so its density would change by orders of magnitude with mu."""
+    policy = TanhGaussian(hidden=())
+    trunk = {"Dense_0": {"kernel": jnp.zeros((3, 4)), "bias": jnp.array([9.0, 0.5, -1.0, 0.0])}}
+    params, x = {"trunk": {"params": trunk}}, jnp.zeros(3)
+    edge, deviation = np.arctanh(1 - 1e-6), np.exp(-1.0)
+    inside = norm.logpdf(np.arctanh(0.2), 0.5, 1) - np.log(1 - 0.2**2)
+    for u, beyond in (
+        (1.0, norm.logsf(edge, 9, deviation)),
+        (-1.0, norm.logcdf(-edge, 9, deviation)),
+    ):
+        got = float(policy.log_prob(params, x, jnp.array([u, 0.2])))
+        assert got == pytest.approx(beyond + inside, rel=1e-2)
+    slope = jax.grad(lambda p: policy.log_prob(p, x, jnp.array([1.0, 0.2])))(params)
+    assert abs(slope["trunk"]["params"]["Dense_0"]["bias"][0]) < 0.1
 
 
 def test_a_normalised_policy_does_not_depend_on_units() -> None:
