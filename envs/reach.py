@@ -5,12 +5,12 @@
 p, p* [m]: the tip and where it should be; e: rotation vector to the rotation that it should have;
 a: action, by which the targets u of the servos move, 0.05 rad a decision at 1, within their ranges;
 a': the one before. o = (q - q*, q' / 10, u - q, p* - p, e, a) [4m + 6]; q*: home, where it starts.
-The pose is one of the tip with each joint within 1 rad of home. A decision is 0.02 s; never
-terminates. success: |p* - p| < 2 cm, |e| < 0.1.
+The pose is one of the tip with each joint within 1 rad of home; of slides read m for rad. A
+decision is 0.02 s; never terminates. success: |p* - p| < 2 cm, |e| < 0.1.
 
 The tip is a site of the file. Without one that is named, it is on the last body that the last servo
-of a hinge turns: its only site, else the frame of a hand that is fixed to the link, else the far
-end of the link. Servos after that one, of a gripper, stay as at home.
+of a hinge turns (none turns: that a servo moves): its only site, else the frame of a hand that is
+fixed to the link, else the far end of the link. Servos after that one, of a gripper, stay at home.
 """
 
 from functools import cache
@@ -39,10 +39,10 @@ TIP = "tip"
 
 @cache
 def motors(asset: str) -> int:
-    """The number of servos up to the last one of a hinge."""
+    """The number of servos up to the last one of a hinge, or without hinges of a slide."""
     model = mjcf.load(asset)
-    turns = model.jnt_type[model.actuator_trnid[:, 0]] == mujoco.mjtJoint.mjJNT_HINGE
-    return int(np.flatnonzero(turns & (model.actuator_trntype == JOINT))[-1]) + 1
+    kinds = model.jnt_type[model.actuator_trnid[:, 0]] * (model.actuator_trntype == JOINT)
+    return int(np.flatnonzero(kinds == kinds.max())[-1]) + 1  # slide < hinge in mjtJoint
 
 
 @cache
@@ -111,8 +111,7 @@ class Reach(Body):
         action, arm = jnp.clip(action, -1.0, 1.0), servos(self._asset, self.spec.act)
         u = jnp.clip(state.info["servos"] + STRIDE * action, arm.low, arm.high)
         gripper = self._body.model.key_ctrl[0, len(u) :].astype(np.float32)
-        control = jnp.concatenate((u, gripper))
-        data = self._body.step(state.data, control, STEPS)
+        data = self._body.step(state.data, jnp.concatenate((u, gripper)), STEPS)
         after = self._state(data, state.info | {"servos": u, "action": action})
         change = ((action - state.info["action"]) ** 2).sum()
         return after.replace(reward=after.reward - change / 100)

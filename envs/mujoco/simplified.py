@@ -48,7 +48,8 @@ def servos(asset: str, count: int | None = None) -> Servos:
     """The first `count` servos of a simplified model; None: all."""
     model = mjcf.load(asset)
     joints, limited = model.actuator_trnid[:count, 0], model.actuator_ctrllimited[:count] > 0
-    low, high = np.where(limited, model.actuator_ctrlrange[:count].T, [[-np.inf], [np.inf]])
+    own = np.where(model.jnt_limited > 0, model.jnt_range.T, [[-np.inf], [np.inf]])[:, joints]
+    low, high = np.where(limited, model.actuator_ctrlrange[:count].T, own)
     angles = (x.astype(np.float32) for x in (model.key_ctrl[0, :count], low, high))
     return Servos(model.jnt_qposadr[joints], model.jnt_dofadr[joints], *angles)
 
@@ -82,17 +83,17 @@ def simplified(robot: str, free: bool) -> str:
             geom.type = CAPSULE  # fitted to the mesh
     spec.worldbody.add_geom(name="floor", type=PLANE, size=[0, 0, 1], material="", contype=1)
     model = spec.compile()
-    if (FREE in model.jnt_type[:1]) != free or not model.nu:
+    joints = model.actuator_trntype == JOINT
+    if (FREE in model.jnt_type[:1]) != free or not joints.any():
         base = "a free base, <freejoint/>," if free else "a fixed base"
-        raise UsageError(f"env.robot={robot}: must have {base} and motors")
+        raise UsageError(f"env.robot={robot}: must have {base} and motors of joints")
     data, feet = _home(model), np.zeros(model.ngeom, bool)
     if free:
         high = [mujoco.mj_geomDistance(model, data, 0, i, 1e3, None) for i in range(model.ngeom)]
         low = np.where(model.geom_contype | model.geom_conaffinity, high, np.inf)[1:]
         feet[1:] = low < low.min() + LEVEL
         data.qpos[2] -= low.min()
-    held, joints = data.ctrl.copy(), model.actuator_trntype == JOINT
-    held[joints] = data.qpos[model.jnt_qposadr[model.actuator_trnid[joints, 0]]]
+    data.ctrl[joints] = data.qpos[model.jnt_qposadr[model.actuator_trnid[joints, 0]]]
     for actuator in np.array(spec.actuators)[joints & (model.actuator_biasprm[:, 1] == 0)]:
         _serve(spec, model, actuator)
     for body in spec.bodies[1:]:
@@ -106,7 +107,7 @@ def simplified(robot: str, free: bool) -> str:
     for element in [*spec.meshes, *spec.textures, *spec.sensors, *spec.keys, *spec.pairs]:
         spec.delete(element)
     _set_scene(spec, model.stat.extent)
-    spec.add_key(name="home", qpos=data.qpos, ctrl=held)
+    spec.add_key(name="home", qpos=data.qpos, ctrl=data.ctrl)
     spec.compile()
     return spec.to_xml()
 

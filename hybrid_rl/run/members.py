@@ -27,7 +27,7 @@ from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings import words as overrides
 from hybrid_rl.settings.build import Run
 from hybrid_rl.settings.complete import LACKING, refusal, select, source
-from hybrid_rl.settings.words import raw_values
+from hybrid_rl.settings.words import plain
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.loop import Axis, DifferError, Loop
 
@@ -53,7 +53,7 @@ def expand_sweep(config: DictConfig, texts: Sequence[str]) -> list[Member]:
 
     config: composed from the overrides `texts`, with its interpolations.
     """
-    texts, raw = [text for text in texts if not overrides.is_swept(text)], raw_values(config)
+    texts, raw = [text for text in texts if not overrides.is_swept(text)], plain(config)
     lists, config = flatten_keys(raw.pop("sweep") or {}), config.copy()
     config.sweep = {}
     for key, values in lists.items():
@@ -64,6 +64,11 @@ def expand_sweep(config: DictConfig, texts: Sequence[str]) -> list[Member]:
         if not numbers or not finite or len({*numbers}) < len(numbers):
             line = "must be a list of different numbers, such as [0.99,0.995]"
             raise UsageError(f"sweep.{key}={values}: {line}")
+    if len(delays := lists.get("episode.delay", ())) > 1:  # each in episodes ready for all
+        times = (config.episode[key] for key in ("jitter", "lag", "longest"))
+        jitter, lag, longest = (x if type(x) in (int, float) else 0 for x in times)
+        config.episode.longest = max(max(delays) + jitter, lag, longest)
+        texts.append(f"episode.longest={config.episode.longest}")
     members = []
     for values in product(*lists.values()):
         chosen = dict(zip(lists, values, strict=True))

@@ -41,7 +41,7 @@ from hybrid_rl.run.saved import Trained, load_named
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings.complete import LACKING, complete, refusal, select
 from hybrid_rl.settings.groups import search_path
-from hybrid_rl.settings.words import forced, raw_values, value_of
+from hybrid_rl.settings.words import forced, plain, value_of
 from hybrid_rl.training.contract import check_acting
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.history import acting as acting_in
@@ -108,7 +108,7 @@ def aimed(
     named = {text.partition("=")[0]: text for text in overrides}
     if "controllers" in config and all(key.startswith("planner.") for key in named):
         return _adjusted(trained, OmegaConf.create(config), overrides), None
-    composed = raw_values(_composed(overrides, config_dir))
+    composed = plain(_composed(overrides, config_dir))
     typed = [key for key in named if "." in key]
     raw = complete({**UNLEARNED, **config, **composed}, [*composed], typed)
     for key in typed:

@@ -16,11 +16,12 @@ import jax
 import jax.numpy as jnp
 from omegaconf import DictConfig, OmegaConf, open_dict
 
+from hybrid_rl.core.batching import join
 from hybrid_rl.errors import MisfitError, UsageError
 from hybrid_rl.files import targets as parts
 from hybrid_rl.run import folder
 from hybrid_rl.run.checkpoints import checkpoint
-from hybrid_rl.run.checkpoints.store import concatenated, each_learner, read_parts
+from hybrid_rl.run.checkpoints.store import each_learner, read_parts
 from hybrid_rl.run.logs.records import flatten_keys
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings import words as overrides
@@ -95,8 +96,8 @@ def joined(starts: Sequence[Start | None]) -> Start | None:
     if not known:
         return None
     memories = [start.memory for start in known if start.memory is not None]
-    memory = concatenated(memories) if memories else None
-    return Start(concatenated([start.learners for start in known]), memory, known[0].line)
+    memory = join(*memories) if memories else None
+    return Start(join(*(start.learners for start in known)), memory, known[0].line)
 
 
 def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:
@@ -150,9 +151,9 @@ def _numbers(config: DictConfig, then: DictConfig, source: Path) -> Any:
 
 
 def _flat(config: DictConfig, *names: str) -> dict[str, Any]:
-    """The values at these keys, all without names, by full keys; not of a part's own world."""
+    """The values at these keys, by full keys; not of a part's own world."""
     values: Any = OmegaConf.to_container(config)
-    chosen = {key: values[key] for key in names or values if values.get(key) is not None}
+    chosen = {key: values[key] for key in names if values.get(key) is not None}
     return {key: value for key, value in flatten_keys(chosen).items() if ".world." not in key}
 
 

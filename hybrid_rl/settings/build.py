@@ -33,7 +33,7 @@ from hybrid_rl.settings.values import (
     time_limit,
     whole,
 )
-from hybrid_rl.settings.words import forced, name, of_job, plain, raw_values, typed_values
+from hybrid_rl.settings.words import forced, name, of_job, plain, typed_values
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.history import acting as acting_in
@@ -114,7 +114,7 @@ def read(config: DictConfig) -> DictConfig:
     with open_dict(config):
         hydra = config.pop("hydra")
     complete_names(config, hydra)
-    raw = raw_values(config)
+    raw = plain(config)
     new = raw["resume"] is None
     typed = keys_of(of_job(hydra), hydra) if new else []
     # a part that lacks a key of `settings` keeps what it has
@@ -136,7 +136,10 @@ def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
     try:
         values: dict[str, Any] = plain(config, resolve=True)
     except OmegaConfBaseException as error:
-        raise UsageError(explain(error)) from error
+        part, lacks = str(error.full_key).split(".")[0], re.findall("key '(.*)' not", str(error))
+        asks = [text for text in overrides if name(text) == part]
+        lines = [f"{text}: {config.algo} has no {key}" for text in asks for key in lacks]
+        raise UsageError([explain(error), *lines][-1]) from error
     for helper in ("sweep", "policy_learning"):
         values.pop(helper, None)
     words = (text for text in overrides if not re.match(r"\+*(sweep|hydra)\.|-", text))

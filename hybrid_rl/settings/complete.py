@@ -131,8 +131,8 @@ def _fill(raw: dict[str, Any], path: str, node: dict[str, Any]) -> None:
             node[name] = given.pop(name)
         elif field.default is not field.empty:
             node |= {name: _listed(field.default)} if _plain(field.default) else {}
-        elif link in raw and not f"{path}.".startswith(f"{link}."):
-            node[name] = f"${{{link}}}"
+        elif not f"{path}.".startswith(f"{link}."):
+            node[name] = f"${{{link}}}"  # `build.resolve` refuses what is lacking
     node |= given
 
 

@@ -103,7 +103,7 @@ def complete_names(config: DictConfig, hydra: Any) -> None:
         file = chosen(hydra, group)
         if file is None or {CONF, THESIS} & {*file.parents} or config["resume"] is not None:
             continue  # no file of the user's
-        raw = overrides.raw_values(config)
+        raw = overrides.plain(config)
         lacking = [key for key in OF_A_TASK if raw.get(key) is None]
         if isinstance(raw.get(group), dict):
             raise UsageError(f"{relative(file)}: its first line must be {GLOBAL}")

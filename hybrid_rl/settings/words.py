@@ -10,7 +10,7 @@ from typing import Any
 
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override, Quote, QuotedString
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import OmegaConf
 
 
 def parse(texts: Iterable[str]) -> list[Override]:
@@ -76,11 +76,6 @@ def typed(texts: Iterable[str]) -> list[str]:
 def plain(node: Any, resolve: bool = False) -> Any:
     """A configuration as dicts and lists; its interpolations stay text, unless they resolve."""
     return OmegaConf.to_container(node, resolve=resolve)
-
-
-def raw_values(config: DictConfig) -> dict[str, Any]:
-    """`config` with its interpolations as text."""
-    return {name: value for name, value in plain(config).items() if name != "hydra"}
 
 
 def value_of(text: str) -> Any:

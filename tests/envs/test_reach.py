@@ -65,6 +65,23 @@ def test_a_site_that_is_not_there_and_a_free_base_are_one_line():
         Reach(robot="go1.xml")
 
 
+def test_slides_alone_are_an_arm_and_no_pose_is_out_of_their_ranges():
+    """Also where a servo has no range of its own, as on the first of two rails."""
+    robot = ARM.replace('<position joint="grip" kp="9"/>', "").replace("0.2 2", "0.2 0.9")
+    robot = robot.replace('"a" axis="0 0 1"', '"a" type="slide" axis="1 0 0"')
+    robot = robot.replace('"b" axis', '"b" type="slide" range="-0.1 0.3" axis')
+    env = Reach(robot=robot, physics="native")
+    for seed in range(3):
+        state = jitted(env, "reset")(jax.random.key(seed))
+        home = jnp.asarray(mjcf.load(env._asset).key_qpos[0, :2], jnp.float32)
+        goal = home + (state.info["target"][:3] - env._tip(state.data.qpos)[0])[:2]
+        assert 0.2 - 1e-6 <= goal[0] <= 0.9 + 1e-6
+        for _ in range(150):
+            u = jnp.clip((goal - state.info["servos"]) / STRIDE, -1, 1)
+            state = jitted(env, "step")(state, u)
+        assert state.metrics["success"] == 1
+
+
 def test_servos_that_move_to_the_angles_of_the_pose_reach_it(env):
     """And the reward is then 1.5, its largest value, while actions rest."""
     start = jitted(env, "reset")(jax.random.key(1))

@@ -10,7 +10,7 @@ from hydra import compose, initialize_config_dir
 from hybrid_rl.settings.build import CONF, READ
 from hybrid_rl.settings.complete import complete, keys
 from hybrid_rl.settings.groups import groups
-from hybrid_rl.settings.words import forced, raw_values
+from hybrid_rl.settings.words import forced, plain
 from scripts.pages.values import RESULTS
 
 ENTRIES = yaml.safe_load((RESULTS / "printed.yaml").read_text(encoding="utf-8"))
@@ -36,7 +36,7 @@ def values(line: str) -> dict[str, Any]:
     """What a row's parts read: full key -> value, but for options that are off."""
     with initialize_config_dir(str(CONF), version_base="1.3"):
         raw = compose("train", forced(line.split(" "), groups()))
-    whole = complete(raw_values(raw), READ)
+    whole = complete(plain(raw), READ)
     read = keys(whole)
     return {
         key: value

@@ -59,11 +59,6 @@ def read_parts(
     return checkpoint.restore(folder, like, step)
 
 
-def concatenated(states: Sequence[Any]) -> Any:
-    """The trees [S, ...] of the learners of several runs as one."""
-    return join(*states) if len(states) > 1 else states[0]
-
-
 def each_learner(change: Callable[[Any], Any], memory: Any) -> Any:
     """The results [S, ...] of `change` for the memory of each learner."""
     learners = range(len(memory.count))
@@ -171,7 +166,7 @@ class Shelf:
             if read[k][0] > self.newest:
                 read[k] = read_parts(folder, agent, seeds, parts, self.newest)
         _, states, metas, notes = zip(*read, strict=True)
-        state, now = concatenated(states).replace(numbers=self.loop.numbers), self.loop.agent.replay
+        state, now = join(*states).replace(numbers=self.loop.numbers), self.loop.agent.replay
         if not self.replay:
             state = state.replace(memory=self.loop.init().memory)
         elif metas[0]["capacity"] != now.capacity:  # a run that is extended may have a larger one
