@@ -3,9 +3,9 @@
     python -m hybrid_rl.list
     python -m hybrid_rl.list config_dir=my_conf
 
-The description is the first comment of the YAML file. A comment "Needs an analytic task." of a
-method is listed as [needs an analytic task], and "Has analytic dynamics." of a task likewise.
-With config_dir=DIR the entries of that folder are listed, too.
+The description is the first comment of the YAML file. Methods with a comment "Needs an analytic
+task." are listed under [needs an analytic task], tasks that have what some methods need likewise.
+With config_dir=DIR the entries of that folder are listed, too, as those of thesis/conf.
 """
 
 if __name__ == "__main__":
@@ -13,10 +13,12 @@ if __name__ == "__main__":
 
     interrupt.install()
 
+from operator import itemgetter
 from pathlib import Path
 
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import CONFIG_DIR, read
+from hybrid_rl.errors import relative
 from hybrid_rl.settings.groups import CONF, THESIS, search_path
 
 MARKS = ("# Has ", "# Needs ")  # of a task, and of a method that not every task fits
@@ -56,34 +58,29 @@ def mark(path: Path) -> str:
     return ""
 
 
-def _row(name: str, path: Path, width: int) -> str:
-    words = mark(path)
-    return f"  {name:{width}}  {about(path)} {f'[{words}]' if words else ''}".rstrip()
-
-
 def main() -> None:
     """The command."""
     given, _ = read(__doc__, ARGUMENTS)
-    folders = [CONF, THESIS]
-    if given["config_dir"]:
-        search_path(given["config_dir"])  # refuses what is no folder
-        folders.insert(1, Path(given["config_dir"]).expanduser())
+    folders = [CONF, *([Path(given["config_dir"]).expanduser()] if given["config_dir"] else ())]
+    if folders[-1].resolve() not in (CONF.resolve(), THESIS.resolve()):
+        search_path(folders[-1])  # refuses what is no folder
     listed = [listing(folder) for folder in folders]
     width = max(len(name) for groups in listed for names in groups.values() for name in names)
     for group, title in GROUPS.items():
-        *ours, theirs = [
-            {name: _row(name, path, width) for name, path in groups[group].items()}
-            for groups in listed
-        ]
-        rows = {name: line for lines in ours for name, line in lines.items()}
-        first = [rows.pop(name) for name in FIRST if name in rows] if group == "algo" else []
-        print(f"{title}  ({group}=NAME{'; start with these nine' if first else ''})")
-        if first:
-            print(*first, "", sep="\n")
-        print(*rows.values(), "", sep="\n")
-        if theirs:
-            print(f"{title} by the thesis' names", *theirs.values(), "", sep="\n")
+        paths = {name: path for groups in listed for name, path in groups[group].items()}
+        marks = {name: f"[{words}]" if (words := mark(paths[name])) else "" for name in paths}
+        blocks = {"[start with these nine]": [name for name in FIRST if name in paths]}
+        for name in sorted(paths.keys() - {*FIRST}, key=lambda name: (marks[name], name)):
+            blocks.setdefault(marks[name], []).append(name)
+        for words, names in filter(itemgetter(1), blocks.items()):
+            print(f"{title}  ({group}=NAME)  {words}".rstrip())
+            for name in names:
+                also = marks[name] if name in FIRST else ""
+                print(f"  {name:{width}}  {about(paths[name])} {also}".rstrip())
+            print()
     print("python -m hybrid_rl.train task=NAME algo=NAME [experiment=NAME] [key=value ...]")
+    if len(folders) == 1:
+        print(f"python -m hybrid_rl.list config_dir={relative(THESIS)}  # with those of the thesis")
 
 
 if __name__ == "__main__":

@@ -78,13 +78,20 @@ def test_the_entries_of_ones_own_are_listed(conf, capsys):
         "# Kettle: boils.\nenv:\n  _target_: kettle.Kettle\n"
     )
     assert show(f"config_dir={conf}") == 0
+    blocks = capsys.readouterr().out.split("\n\n")
+    head = {row.split()[0]: each.splitlines()[0] for each in blocks for row in each.split("\n  ")}
+    assert head["kettle"] == head["halfcheetah"] == "Tasks  (task=NAME)"
+    assert head["ring"] == "Methods  (algo=NAME)  [needs a task with an equilibrium]"
+    assert head["pendulum"].endswith("[has analytic dynamics, an equilibrium and a known reward]")
+    assert head["sac"].endswith("[start with these nine]")
+
+
+def test_names_of_the_thesis_are_listed_by_the_last_line(capsys):
+    assert show() == 0
     printed = capsys.readouterr().out
-    assert "  kettle " in printed
-    assert "Kettle: boils." in printed
-    assert "Around a ring. [needs a task with an equilibrium]\n" in printed
-    (ours,) = [line for line in printed.splitlines() if line.startswith("  pendulum ")]
-    assert ours.endswith("[has analytic dynamics, an equilibrium and a known reward]")
-    assert "  halfcheetah " in printed
+    assert "thesis/fig" not in printed
+    assert show(printed.split("hybrid_rl.list ")[1].split()[0]) == 0
+    assert "  thesis/fig_6_1 " in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("task", listed.listing()["task"])

@@ -70,7 +70,7 @@ def _unknown(file: str, found: Sequence[str]) -> str:
     group, value = "/".join(names[:depth]), "/".join(names[depth:])
     known = sorted({*options(group), *found})
     many = len(known) >= MANY
-    some = f"the {len(known)} in `python -m hybrid_rl.list`" if many else ", ".join(known)
+    some = "those in `python -m hybrid_rl.list`" if many else ", ".join(known)
     near = nearest(value.lower(), known)
     hint = f"did you mean {near}?" if near else ""
     if group == "task" and (kind := OF_GYMNASIUM.search(value)):
