@@ -28,7 +28,6 @@ from hybrid_rl.networks import MLP, Activation, Widths, apply
 from hybrid_rl.protocols import LearnedPolicy
 from hybrid_rl.types import Batch, Params, Spec
 
-EDGE = 1 - 1e-6  # largest action whose density is known to float32
 SLOWEST, FASTEST = 1e-5, 1e-2  # learning rates with `target_kl`
 METRICS = tuple(f"ppo/{of}" for of in ("policy_loss", "value_loss", "entropy", "kl", "rate"))
 
@@ -143,13 +142,12 @@ class PPO:
     def _learned(self, state: PPOState, scale: Any, key: Array) -> PPOState:
         """`state` after the passes over its decisions."""
         made = state.decisions
-        u = jnp.clip(made.action, -EDGE, EDGE)
-        old = self.policy.log_prob(state.policy, made.obs, u)
+        old = self.policy.log_prob(state.policy, made.obs, made.action)
         x = made.obs.reshape(-1, made.obs.shape[-1])
         seen = statistics.update(state.seen, x)
         state = state.replace(seen=seen, policy=self.policy.observe(state.policy, x))
         advantage, values = self.advantages(state, 1.0 if scale is None else scale)
-        whole = Rows(made.obs, u, old, advantage, advantage + values)
+        whole = Rows(made.obs, made.action, old, advantage, advantage + values)
         flat: Rows = jax.tree.map(lambda leaf: leaf.reshape(-1, *leaf.shape[2:]), whole)
 
         def one(state: PPOState, given: tuple[Array, Array]) -> tuple[PPOState, dict[str, Array]]:

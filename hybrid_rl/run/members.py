@@ -62,8 +62,7 @@ def expand_sweep(config: DictConfig, texts: Sequence[str]) -> list[Member]:
         numbers = values if isinstance(values, list) else []
         finite = all(type(x) in (int, float) and isfinite(x) for x in numbers)
         if not numbers or not finite or len({*numbers}) < len(numbers):
-            line = "must be a list of different numbers, such as [0.99,0.995]"
-            raise UsageError(f"sweep.{key}={values}: {line}")
+            raise UsageError(f"sweep.{key}={values}: must be a list of different numbers")
     if len(delays := lists.get("episode.delay", ())) > 1:  # each in episodes ready for all
         times = (config.episode[key] for key in ("jitter", "lag", "longest"))
         jitter, lag, longest = (x if type(x) in (int, float) else 0 for x in times)

@@ -64,19 +64,6 @@ def test_labels_carry_units_and_thousands():
     assert panel.lines[0].get_xdata()[-1] == pytest.approx(200_000 / 3600)
 
 
-def test_several_metrics_are_rows_without_a_blank():
-    """One column per task; if a task lacks a metric, no panel is empty."""
-    metrics = ("train/return", "planner/mode_insertion_gradient")
-    drawn = [curve(task, metric=metric) for metric in metrics for task in ("ant", "hopper")]
-    axes = plot(drawn).axes
-    assert [panel.get_title() for panel in axes] == ["ant", "hopper", "ant", "hopper"]
-    assert axes[3].get_ylabel() == "Mode insertion gradient"
-    assert [panel.get_subplotspec().rowspan.start for panel in axes] == [0, 0, 1, 1]
-    axes = plot(drawn[:3]).axes
-    assert len(axes) == axes[0].get_subplotspec().get_gridspec().ncols == 3
-    assert all(panel.lines for panel in axes)
-
-
 @pytest.mark.parametrize(("tasks", "labels"), [(1, 1), (1, 9), (3, 4)])
 def test_legends_and_notes_cover_no_axes(tasks, labels):
     """By their boxes in the rendered picture; and all are inside the picture."""

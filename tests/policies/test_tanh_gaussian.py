@@ -4,6 +4,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from scipy.stats import norm
 from toys import begun
 
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
@@ -32,6 +33,16 @@ def test_samples_are_squashed_normal_and_have_its_density(policy: TanhGaussian) 
     assert float(log_prob[0]) == pytest.approx(wanted, abs=1e-3)
     assert float(policy.log_prob(params, x, u[0])) == pytest.approx(wanted, abs=1e-3)
     assert (np.abs(policy.mean(params, x)) < 1).all()
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_an_action_at_its_bound_has_the_probability_to_be_there(side: float) -> None:
+    """float32 does not know its z, so its density would change by orders of magnitude with mu."""
+    policy, edge = TanhGaussian(hidden=()), np.arctanh(1 - 1e-6)
+    trunk = {"Dense_0": {"kernel": jnp.zeros((3, 2)), "bias": jnp.array([9.0, -1.0])}}
+    given = {"trunk": {"params": trunk}}, jnp.zeros(3), jnp.array([side])
+    wanted = norm.logcdf((side * 9 - edge) / np.exp(-1))
+    assert float(policy.log_prob(*given)) == pytest.approx(wanted, rel=1e-2, abs=1e-4)
 
 
 def test_a_normalised_policy_does_not_depend_on_units() -> None:

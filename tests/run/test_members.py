@@ -126,7 +126,7 @@ def test_a_learner_that_diverges_ends_alone(tmp_path, capfd):
     [
         ("policy_learner.updates=[1,2]", "they decide what is compiled; use -m policy_learner.up"),
         ("policy_learner.tau=[0.1,2]", "policy_learner.tau=2: must lie in (0, 1]"),
-        ("policy_learner.tau=0.1", "must be a list of different numbers, such as [0.99,0.995]"),
+        ("policy_learner.tau=0.1", "must be a list of different numbers"),
         ("policy_learner.tau=[0.1,0.1]", "=[0.1, 0.1]: must be a list of different numbers"),
         ("policy_learner.tua=[0.1,0.2]", "sac has no such key; did you mean policy_learner.tau?"),
         ("episode.sensor_noise=[0.1,0.2]", "as they decide what is compiled; use -m"),
