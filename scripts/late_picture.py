@@ -57,7 +57,7 @@ def draw(found: dict[str, Any]) -> Figure:
                 ends = np.array([[float(side[0]) for side in band(one)] for one in each]).T
                 axes.plot(x, middles, mark, color=ink, label=name)
                 axes.vlines(x, *ends, color=ink, lw=2, alpha=0.5)
-            axes.set(title=f"{title}, simulated", xlabel="actions are late by [decisions]", ylabel="return")
+            axes.set(title=f"{title}, simulated", xlabel="late by [decisions]", ylabel="return")
             axes.axhline(0, color="0.8", lw=1)
         shown = panels[0].get_legend_handles_labels()
         panels[-1].legend(*shown, loc="center right", frameon=True, fontsize="small")

@@ -52,7 +52,7 @@ class Squashed(ABC):
         return sampled(*self.gaussian(params, x), noise)
 
     def log_prob(self, params: dict[str, Any], x: Array, u: Array) -> Array:
-        """log pi(u|x) [...] of u [..., m] at x [..., n]; beyond EDGE the probability to be there."""
+        """log pi(u|x) [...] of u [..., m] at x [..., n]; beyond EDGE, the probability to be so."""
         mu, sigma = self.gaussian(params, x)
         z = jnp.arctanh(jnp.clip(u, -EDGE, EDGE))
         beyond = norm.logcdf(jnp.sign(u) * (mu - z) / sigma)
