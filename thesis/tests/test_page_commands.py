@@ -2,6 +2,7 @@
 
 import re
 from functools import partial
+from pathlib import Path
 
 import page_commands as commands
 import pytest
@@ -74,6 +75,7 @@ def folder(tmp_path_factory):
     folder = tmp_path_factory.mktemp("pages")
     size = ["policy.hidden=[256,256]", "episode.steps=20", "total_steps=100", "eval_every=50"]
     (folder / "policies").mkdir()  # in which the commands of the pages write
+    (folder / "thesis").symlink_to(Path(__file__).parents[1])  # which they read
     run(folder / "run", "algo=hybrid_stochastic", *size, "eval_modes=[full,policy]")
     head = "exp_name,env_name,seed,metric,env_step,value"  # of another library's curve
     (folder / "sb3.csv").write_text(f"{head}\nSAC,pendulum,0,avg_return,50,-300\n")
