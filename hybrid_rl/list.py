@@ -5,7 +5,7 @@
 
 The description is the first comment of the YAML file. Methods with a comment "Needs an analytic
 task." are listed under [needs an analytic task], tasks that have what some methods need likewise.
-With config_dir=DIR the entries of that folder are listed, too, as those of thesis/conf.
+With config_dir=DIR the entries of that folder, such as thesis/conf, are listed, too.
 """
 
 if __name__ == "__main__":
@@ -63,7 +63,7 @@ def main() -> None:
     given, _ = read(__doc__, ARGUMENTS)
     folders = [CONF, *([Path(given["config_dir"]).expanduser()] if given["config_dir"] else ())]
     if folders[-1].resolve() not in (CONF.resolve(), THESIS.resolve()):
-        search_path(folders[-1])  # refuses what is no folder
+        search_path(folders[-1])  # UsageError if there is no such folder
     listed = [listing(folder) for folder in folders]
     width = max(len(name) for groups in listed for names in groups.values() for name in names)
     for group, title in GROUPS.items():

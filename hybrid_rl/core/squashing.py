@@ -15,7 +15,7 @@ EDGE = 1 - 1e-6  # largest action whose z is known to float32
 
 
 def log_density(z: Array, noise: Array, sigma: Array) -> Array:
-    """Log-density of each entry of tanh(z), z = mu + sigma noise."""
+    """Log-density [..., m] of each entry of tanh(z), z = mu + sigma noise."""
     log_normal = -0.5 * noise**2 - jnp.log(sigma) - 0.5 * jnp.log(2 * jnp.pi)
     log_jacobian = 2 * (jnp.log(2.0) - z - jax.nn.softplus(-2 * z))
     return log_normal - log_jacobian
@@ -52,7 +52,7 @@ class Squashed(ABC):
         return sampled(*self.gaussian(params, x), noise)
 
     def log_prob(self, params: dict[str, Any], x: Array, u: Array) -> Array:
-        """log pi(u|x) [...] of u [..., m] at x [..., n]; beyond EDGE, the probability to be so."""
+        """log pi(u|x) [...] of u [..., m], x [..., n]; beyond EDGE the log-probability of that."""
         mu, sigma = self.gaussian(params, x)
         z = jnp.arctanh(jnp.clip(u, -EDGE, EDGE))
         beyond = norm.logcdf(jnp.sign(u) * (mu - z) / sigma)

@@ -3,8 +3,8 @@
 A controller sees o + sensor_noise N(0, I), or some entries of it, and with `history` how they came
 about (`core/history.py`); environment, reward and constraint see o. Its action u
 arrives `delay` + `jitter` U(0, 1) seconds later, as clip(u + action_noise N(0, I)), or is lost, and
-never overtakes another. If the method knows of that, it is sent so much later that it acts whole
-decisions after its observation, on average (`wrappers.whole`). What acted in a decision is
+never overtakes another. If the method knows of that, the robot releases it no sooner than whole
+decisions after its observation (`wrappers.whole`). What acted in a decision is
 `state.clock.sent.acted`. An expert who is disturbed in this way demonstrates how to return (Laskey
 et al. 2017, "DART: noise injection for robust imitation learning"). With `randomise` each episode
 has another body (`envs/mujoco/randomised.py`).

@@ -175,7 +175,7 @@ class Late(Around):
     delay: float  # [s]
     jitter: float = 0.0  # [s] most that an action is later than that, uniform
     loss: float = 0.0  # probability that an action never arrives
-    lag: float | None = None  # [s] known: none acts before that, made whole; None: as in `Episode`
+    lag: float | None = None  # [s] known, before which none acts; None: as in `Episode`
     longest: float = 0.0  # [s] that an action takes; 0: no longer than these say
 
     def reset(self, key: Array) -> EnvState:
@@ -208,32 +208,30 @@ class Late(Around):
     def _send(self, sent: Sent, action: Array) -> Sent:
         """`sent` with one action more, the oldest of which cannot arrive any more."""
         wait, drawing = jnp.float32(self._decisions(self.delay)), sent.drawing
-        if drawing is None:
-            wait = jnp.maximum(wait, self._held)
-        else:
+        if drawing is not None:
             key, losing, later = jax.random.split(jax.random.wrap_key_data(drawing), 3)
             wait = wait + self._decisions(self.jitter) * jax.random.uniform(key)
             before = jnp.where(jnp.isfinite(sent.waits), sent.waits, -jnp.inf).max()
             lost = jax.random.uniform(losing) < self.loss
-            wait = jnp.where(lost, jnp.inf, jnp.maximum(jnp.maximum(wait, self._held), before))
+            wait = jnp.where(lost, jnp.inf, jnp.maximum(wait, before))
             drawing = jax.random.key_data(later)
         actions = jnp.concatenate((sent.actions[1:], action[None]))
-        waits = jnp.append(sent.waits[1:], wait)
+        waits = jnp.append(sent.waits[1:], jnp.maximum(wait, self._released))
         return sent._replace(actions=actions, waits=waits, drawing=drawing)
 
     def _decisions(self, time: float) -> float:
         return round(time / self.spec.dt, 6)
 
     @property
-    def _held(self) -> float:
-        """Until an action may act [decisions]: a robot releases it at a fixed time."""
+    def _released(self) -> float:
+        """When a robot releases an action that has arrived [decisions], made whole."""
         return whole((self.delay + self.jitter if self.lag is None else self.lag) / self.spec.dt)
 
     @property
     def _longest(self) -> float:
         """Of an action [decisions]."""
         longest = self._decisions(self.longest)
-        return longest or max(self._held, self._decisions(self.delay + self.jitter))
+        return longest or max(self._released, self._decisions(self.delay + self.jitter))
 
     def _steps(self, state: EnvState) -> int:
         """Steps of the physics in a decision; 0: actions arrive between decisions, or no MuJoCo."""
