@@ -198,10 +198,9 @@ def legend_outside(*panels: "Axes") -> None:
     """A legend of these axes below all axes of their figure, whose layout is constrained."""
     named = [zip(*reversed(axes.get_legend_handles_labels()), strict=True) for axes in panels]
     of = dict(itertools.chain(*named))  # label -> handle
-    columns = int(FIGURE_WIDTH / (max(map(len, of), default=1) + 7))
-    below: Any = "outside lower center"
+    columns = max(1, min(len(of), int(FIGURE_WIDTH / (max(map(len, of), default=1) + 7))))
     figure: Any = panels[0].get_figure()
-    figure.legend([*of.values()], [*of], loc=below, ncols=max(1, min(len(of), columns)))
+    figure.legend([*of.values()], [*of], loc="outside lower center", ncols=columns)
 
 
 def plain_log(axis: Any, narrow: bool = False) -> None:
