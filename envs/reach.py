@@ -10,7 +10,8 @@ decision is 0.02 s; never terminates. success: |p* - p| < 2 cm, |e| < 0.1.
 
 The tip is a site of the file. Without one that is named, it is on the last body that the last servo
 of a hinge turns (none turns: that a servo moves): its only site, else the frame of a hand that is
-fixed to the link, else the far end of the link. Servos after that one, of a gripper, stay at home.
+fixed to the link, else the far end of the link. Servos after the last one that moves the tip, of a
+gripper, stay at home. So an arm whose last joint is a slide needs a site on what that joint moves.
 """
 
 from functools import cache
@@ -23,7 +24,7 @@ from jax import Array
 
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.body import Body
-from hybrid_rl.envs.mujoco.kinematics import Chain, inverse, quat_multiply, rotation_vector
+from hybrid_rl.envs.mujoco.kinematics import Chain, inverse, links, quat_multiply, rotation_vector
 from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.envs.mujoco.simplified import JOINT, TIMESTEP, located, servos, simplified
 from hybrid_rl.errors import UsageError
@@ -38,11 +39,13 @@ TIP = "tip"
 
 
 @cache
-def motors(asset: str) -> int:
-    """The number of servos up to the last one of a hinge, or without hinges of a slide."""
-    model = mjcf.load(asset)
-    kinds = model.jnt_type[model.actuator_trnid[:, 0]] * (model.actuator_trntype == JOINT)
-    return int(np.flatnonzero(kinds == kinds.max())[-1]) + 1  # slide < hinge in mjtJoint
+def motors(asset: str, site: str) -> int:
+    """The number of servos up to the last one that moves the site."""
+    model, chain = mjcf.load(asset), links(asset, site).address
+    moving = np.isin(model.jnt_qposadr[model.actuator_trnid[:, 0]], chain)
+    if not (last := np.flatnonzero(moving & (model.actuator_trntype == JOINT))).size:
+        raise UsageError(f"env.site={site}: no servo moves it")
+    return int(last[-1]) + 1
 
 
 @cache
@@ -54,7 +57,9 @@ def tipped(robot: str, site: str) -> str:
         return asset
     if site != TIP:
         raise UsageError(f"env.site={site}: choose one of {', '.join([TIP, *known])}")
-    link = body = int(model.jnt_bodyid[model.actuator_trnid[motors(asset) - 1, 0]])
+    kinds = model.jnt_type[model.actuator_trnid[:, 0]] * (model.actuator_trntype == JOINT)
+    last = np.flatnonzero(kinds == kinds.max())[-1]  # slide < hinge in mjtJoint
+    link = body = int(model.jnt_bodyid[model.actuator_trnid[last, 0]])
     for child in range(body + 1, model.nbody):
         if model.body_parentid[child] == body and not model.body_jntnum[child]:
             body = child
@@ -87,7 +92,7 @@ class Reach(Body):
     @property
     def spec(self) -> Spec:
         """Observation size, action size and decision interval."""
-        m = motors(self._asset)
+        m = motors(self._asset, self.site)
         return Spec(obs=4 * m + 6, act=m, dt=STEPS * TIMESTEP)
 
     @property

@@ -1,6 +1,8 @@
 """Return over minutes from the command: the numbers and the picture of docs/results/minutes.md.
 
     python -m scripts.minutes runs=FOLDER out=minutes.png
+    python -m scripts.minutes runs=FOLDER keep=docs/results/minutes.json  # with what FOLDER lacks
+    python -m scripts.minutes keep=docs/results/minutes.json  # draws it again
 
 Runs are the folders FOLDER/ROBOT/METHOD/NAME; FOLDER/ROBOT/METHOD/NAME.json is of scripts.ppo_brax.
 The time of an evaluation is `before_s` of summary.json and its `wall_s`, so that imports and the
@@ -12,22 +14,41 @@ half. After a minute a learner has the return of its latest evaluation, null onc
 import json
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import reduce
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hybrid_rl.analysis import learning_curves
-from hybrid_rl.analysis.curves import curve_of, spread
+from hybrid_rl.analysis import learning_curves, studies, style
+from hybrid_rl.analysis.curves import Curve, curve_of, spread
 from hybrid_rl.analysis.logged import Learner, count_failures, learners
 from hybrid_rl.analysis.results import RunFolder
-from hybrid_rl.analysis.studies import save
 from hybrid_rl.cli.arguments import Argument, output, read
+from hybrid_rl.errors import UsageError
+from hybrid_rl.files.reading import json_file
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 ARGUMENTS = (
-    Argument("runs", "", "folder of the runs, by robot and method", needed="runs=FOLDER"),
+    Argument("runs", "", "folder of the runs, by robot and method"),
+    Argument("keep", "", "earlier numbers: each robot's methods that the runs lack are kept"),
     Argument("out", "minutes.png", "the picture; its numbers are beside it, as .json"),
 )
+ROBOTS = {  # its folder -> the title of its panel, in their order
+    "halfcheetah": "half-cheetah",
+    "walker2d": "walker",
+    "ant": "ant",
+    "humanoid": "humanoid",
+    "legs": "Go1 follows commands",
+}
+METHODS = {  # its folder -> what one types, in their order
+    "quick": "settings=quick",
+    "sac": "algo=sac settings=quick",
+    "flash_sac": "algo=flash_sac settings=quick",
+    "ppo": "algo=ppo",
+}
 METRIC, MINUTES = "eval/return", (1, 2, 5, 10)
 Clock = Callable[[np.ndarray], np.ndarray]  # decisions [N] -> [s] since the command
 
@@ -87,9 +108,24 @@ def after(learner: Learner, minutes: float) -> float:
     return float(learner.y[np.searchsorted(x, t, side="right") - 1])
 
 
+def alone(folder: Path) -> dict[str, Any]:
+    """What the first run of one learner in a method's folder took; {} if there is none."""
+    for path in sorted(file.parent for file in folder.rglob("summary.json")):
+        if len(run := evaluated(path)) == 1:
+            timed, counted = run[0]
+            rows, took = np.stack((timed.x, counted.x, timed.y), axis=1), RunFolder(path).summary
+            kept = {key: took.get(key) for key in ("before_s", "compile_s")}
+            return {**kept, "decisions_per_s": took.get("env_steps_per_s"), "evaluations": rows}
+    return {}
+
+
 def numbers(folder: Path) -> dict[str, Any]:
-    """Curves of all methods, and the returns [S] after MINUTES."""
-    found: dict[str, Any] = {"metric": METRIC, "x": "wall_s", "minutes": {}, "curves": []}
+    """Curves of all methods, the returns [S] after MINUTES, and the runs of one learner.
+
+    evaluations of these: [s] since the command, decisions, return.
+    """
+    found: dict[str, Any] = {"metric": METRIC, "x": "wall_s"}
+    found |= {"alone": {}, "minutes": {}, "curves": []}
     for robot in sorted(path for path in folder.iterdir() if path.is_dir()):
         methods = sorted(path for path in robot.iterdir() if path.is_dir())
         panel = {(robot.name, path.name): members(path) for path in methods}
@@ -98,19 +134,72 @@ def numbers(folder: Path) -> dict[str, Any]:
             rows[key[1]] = {str(m): [after(one, m) for one in each] for m in MINUTES}
             curve = curve_of(key, METRIC, each, 0.0, notes)
             found["curves"].append(learning_curves.to_numbers(curve))
+        taken = {f"{robot.name}, {typed(path.name)}": alone(path) for path in methods}
+        found["alone"] |= {name: took for name, took in taken.items() if took}
     return found
+
+
+def typed(method: str) -> str:
+    """A method as one types it."""
+    return METHODS.get(method, method)
+
+
+def merged(kept: dict[str, Any], found: dict[str, Any]) -> dict[str, Any]:
+    """`found`, and of `kept` the methods of each robot that it lacks, and its other keys."""
+    curves = {
+        (one["task"], one["label"]): one for numbers in (kept, found) for one in numbers["curves"]
+    }
+    minutes = dict(kept["minutes"])
+    for robot, rows in found["minutes"].items():
+        minutes[robot] = minutes.get(robot, {}) | rows
+    both = {"minutes": minutes, "curves": [*curves.values()]}
+    return kept | found | both | {"alone": kept["alone"] | found["alone"]}
+
+
+def place(curve: Curve) -> tuple[int, int]:
+    """Of a curve in the picture; unknown robots and methods come last."""
+    robots, methods = [*ROBOTS, curve.task], [*METHODS, curve.label]
+    return robots.index(curve.task), methods.index(curve.label)
+
+
+def draw(found: dict[str, Any]) -> "Figure":
+    """A panel for each robot, over the same minutes; grey while settings=quick is compiled."""
+    curves = sorted(learning_curves.from_numbers(found), key=place)
+    end = int(np.ceil(max(one.x[-1] for one in curves) / 60))
+    titles = {one.task: ROBOTS.get(one.task, one.task) for one in curves}
+    drawn = [replace(one, task=titles[one.task], label=typed(one.label)) for one in curves]
+    picture = learning_curves.plot(drawn, "wall_s")
+    for legend in [*picture.legends, *(axes.get_legend() for axes in picture.axes)]:
+        if legend:
+            legend.remove()
+    for axes, robot in zip(picture.axes, titles, strict=True):
+        axes.set(xlabel="Minutes from the command", xlim=(0, end))
+        axes.set_xticks(range(0, end + 1, 1 + end // 10))
+        if took := found["alone"].get(f"{robot}, {METHODS['quick']}"):
+            ready = (took["before_s"] + took["compile_s"]) / 60
+            about = f"{METHODS['quick']} is compiled"
+            axes.axvspan(0, ready, color="0.92", lw=0, zorder=0, label=about)
+    with studies.styled():
+        style.legend_outside(*picture.axes)
+    return picture
 
 
 def main() -> None:
     """The command."""
     given: Any = read(__doc__, ARGUMENTS)[0]
-    found = numbers(Path(given["runs"]))
-    drawn = learning_curves.from_numbers(found)
-    save(learning_curves.plot(drawn, "wall_s"), found, output("out", given["out"], (".png",)))
+    sources = [numbers(Path(given["runs"]))] if given["runs"] else []
+    if given["keep"]:
+        sources.insert(0, json_file(Path(given["keep"])))
+    if not sources:
+        raise UsageError("runs, keep: give one of them, or both")
+    found = reduce(merged, sources)
+    studies.save(draw(found), found, output("out", given["out"], (".png",)))
     for robot, methods in found["minutes"].items():
         for method, rows in methods.items():
-            known = {m: np.array(row) for m, row in rows.items() if np.isfinite(row).all()}
-            ends = ", ".join(f"{m} min {spread(row)}" for m, row in known.items())
+            known = {m: np.array(row, float) for m, row in rows.items()}
+            ends = ", ".join(
+                f"{m} min {spread(row)}" for m, row in known.items() if np.isfinite(row).all()
+            )
             print(f"{robot}, {method}: {ends}")
 
 

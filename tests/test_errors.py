@@ -58,6 +58,7 @@ USAGE = [  # overrides of train, after task=pendulum algo=hybrid_stochastic; wor
     ("algo=sac planner=gradient", "rl: planner=gradient: sac learns no model"),
     ("algo=ppo planner=gradient", "rl: planner=gradient: ppo has no model\n"),
     ("algo=ppo planner=shooting", "rl: planner=shooting: ppo has no model"),
+    ("algo=noise planner=shooting", "rl: planner=shooting: noise has no objective\n"),
     ("algo=sac model=gaussian", "rl: model=gaussian: sac has no model\n"),
     ("algo=kle3 settings=light", "In 'settings/light': Could not override 'proposal'"),
     ("algo=bc", "demonstrations=demonstrations/pendulum.npz: no such file; `python -m hybrid_rl"),

@@ -81,10 +81,10 @@ class Chain:
         The Jacobian's rows are linear, then angular velocity in the world frame; its columns are
         the joints along the chain.
         """
-        links = _links(self.asset, self.site)
-        has_joint = links.address >= 0
-        reference = links.reference.astype(np.float32)
-        angles = jnp.where(has_joint, qpos[links.address] - reference, 0.0)
+        own = links(self.asset, self.site)
+        has_joint = own.address >= 0
+        reference = own.reference.astype(np.float32)
+        angles = jnp.where(has_joint, qpos[own.address] - reference, 0.0)
 
         def add_link(carry: tuple, link: tuple) -> tuple:
             (p, r), (pos, quat, axis, anchor, hinge, angle) = carry, link
@@ -94,10 +94,10 @@ class Chain:
             p = jnp.where(hinge, c - rotate(rotated, anchor), p + a * angle)
             return (p, jnp.where(hinge, rotated, r)), (a, c)
 
-        tables = [jnp.asarray(table, jnp.float32) for table in links[:4]]
+        tables = [jnp.asarray(table, jnp.float32) for table in own[:4]]
         start = (jnp.zeros(3), jnp.eye(4, dtype=jnp.float32)[0])
-        (p, r), (a, c) = jax.lax.scan(add_link, start, (*tables, links.hinge, angles))
-        hinge = links.hinge[:, None]
+        (p, r), (a, c) = jax.lax.scan(add_link, start, (*tables, own.hinge, angles))
+        hinge = own.hinge[:, None]
         linear = jnp.where(hinge, jnp.cross(a, p[None] - c), a)
         angular = jnp.where(hinge, a, 0.0)
         return p, r, jnp.concatenate((linear, angular), 1)[has_joint].T
@@ -118,26 +118,27 @@ def _constant_pose(asset: str, site: str, qpos: tuple[float, ...]) -> tuple[np.n
 
 
 @cache
-def _links(asset: str, site: str) -> Links:
+def links(asset: str, site: str) -> Links:
+    """The links from the world to a site."""
     model = mjcf.load(asset)
     end = model.site(site)
     bodies = [int(end.bodyid[0])]
     while parent := int(model.body_parentid[bodies[0]]):
         bodies.insert(0, parent)
     zero, identity = np.zeros(3), np.eye(4)[0]
-    links = []
+    found = []
     for body in bodies:
         pos, quat = model.body_pos[body], model.body_quat[body]
         first, count = model.body_jntadr[body], model.body_jntnum[body]
         for j in range(first, first + count):
             address, hinge = model.jnt_qposadr[j], model.jnt_type[j] == HINGE
             joint = (model.jnt_axis[j], model.jnt_pos[j], hinge, address, model.qpos0[address])
-            links.append((pos, quat, *joint))
+            found.append((pos, quat, *joint))
             pos, quat = zero, identity
         if not count:
-            links.append((pos, quat, zero, zero, False, -1, 0.0))
-    links.append((end.pos, end.quat, zero, zero, False, -1, 0.0))
-    return Links(*(np.array(column) for column in zip(*links, strict=True)))
+            found.append((pos, quat, zero, zero, False, -1, 0.0))
+    found.append((end.pos, end.quat, zero, zero, False, -1, 0.0))
+    return Links(*(np.array(column) for column in zip(*found, strict=True)))
 
 
 def damped_inverse(jacobian: Array, velocity: Array, damping: float, desired: Array) -> Array:

@@ -1,7 +1,7 @@
 """What is drawn of an environment: its `scene` at its `pose`, else the model that it simulates.
 
-A model without a sky, a light or a camera of the name CAMERA gets ours: a gradient, a brighter
-headlight, and a free camera that follows its first body.
+A model without a sky, a light or a camera of the name CAMERA gets ours: a gradient, and a sun and a
+free camera that follow its first body.
 """
 
 from collections.abc import Callable
@@ -9,7 +9,6 @@ from typing import Any
 
 import jax
 import mujoco
-import numpy as np
 from jax import Array
 
 from hybrid_rl.envs.mujoco import mjcf
@@ -19,7 +18,7 @@ from hybrid_rl.types import EnvState
 
 CAMERA = "track"  # used if the scene has a camera of this name
 SKY = ((0.65, 0.78, 0.92), (0.96, 0.97, 0.98))  # above, and at the horizon
-AMBIENT = 0.35  # of the headlight, instead of MuJoCo's 0.1
+SUN = {"pos": [0, -2, 4], "dir": [0, 0.45, -1], "diffuse": [0.55] * 3}  # [m] from the body
 ELEVATION = -15.0  # [degrees] of the free camera, instead of MuJoCo's -45
 DRAWN = "write `scene(self)`, MJCF text or its file, and `pose(self, state)`, its qpos at a state"
 
@@ -46,8 +45,7 @@ def check_drawable(env: Any) -> None:
 
 def _first(env: Any) -> PhysicsState:
     """The shapes of the simulation's state in `env`."""
-    found = simulated(jax.eval_shape(env.reset, jax.random.key(0)))
-    if not found:
+    if not (found := simulated(jax.eval_shape(env.reset, jax.random.key(0)))):
         line = f"{type(env).__name__} has no `scene` and no `pose`: the world cannot be drawn"
         raise UsageError(f"{line}; {DRAWN}")
     return found[0]
@@ -55,11 +53,8 @@ def _first(env: Any) -> PhysicsState:
 
 def simulated(state: EnvState) -> list[PhysicsState]:
     """The states of MuJoCo's models in the state of an environment."""
-
-    def is_one(x: Any) -> bool:
-        return isinstance(x, PhysicsState)
-
-    return [x for x in jax.tree.leaves(state.data, is_leaf=is_one) if is_one(x)]
+    found = jax.tree.leaves(state.data, is_leaf=lambda x: isinstance(x, PhysicsState))
+    return [x for x in found if isinstance(x, PhysicsState)]
 
 
 def dressed(scene: str) -> mujoco.MjModel:
@@ -70,15 +65,15 @@ def dressed(scene: str) -> mujoco.MjModel:
         sky.builtin = mujoco.mjtBuiltin.mjBUILTIN_GRADIENT
         sky.rgb1, sky.rgb2 = SKY
     if not spec.lights:
-        spec.visual.headlight.ambient = np.maximum(spec.visual.headlight.ambient, AMBIENT)
+        mode, kind = mujoco.mjtCamLight.mjCAMLIGHT_TRACKCOM, mujoco.mjtLightType.mjLIGHT_DIRECTIONAL
+        spec.bodies[:2][-1].add_light(mode=mode, type=kind, **SUN)
     return spec.compile()
 
 
 def camera(model: mujoco.MjModel) -> mujoco.MjvCamera:
     """The scene's camera that follows the robot, else a free one that follows the first body."""
     found = mujoco.MjvCamera()
-    number = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_CAMERA, CAMERA)
-    if number >= 0:
+    if (number := mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_CAMERA, CAMERA)) >= 0:
         found.type, found.fixedcamid = mujoco.mjtCamera.mjCAMERA_FIXED, number
         return found
     mujoco.mjv_defaultFreeCamera(model, found)

@@ -163,12 +163,11 @@ def _set_scene(spec: mujoco.MjSpec, extent: float) -> None:
     paint = spec.material("floor") or spec.add_material(name="floor")
     paint.texuniform, paint.texrepeat = True, [1, 1]
     paint.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = "floor"
-    floor = spec.geom("floor")
-    floor.material, floor.contype, floor.conaffinity = "floor", 1, 0
+    floor = spec.geom("floor")  # white: its texture's colours, whatever those of the file's default
+    floor.material, floor.rgba, floor.contype, floor.conaffinity = "floor", np.ones(4), 1, 0
     if CAMERA not in [camera.name for camera in spec.cameras]:
-        mode, far = mujoco.mjtCamLight.mjCAMLIGHT_TRACKCOM, 2.5 * extent
-        pose = {"pos": [0, -far, 0.35 * far], "quat": [0.81, 0.59, 0, 0]}
-        spec.bodies[1].add_camera(name=CAMERA, mode=mode, **pose)
+        mode, away = mujoco.mjtCamLight.mjCAMLIGHT_TRACKCOM, extent * np.array([0, -2.5, 0.875])
+        spec.bodies[1].add_camera(name=CAMERA, mode=mode, pos=away, quat=[0.81, 0.59, 0, 0])
     option = spec.option
     option.timestep, option.cone, option.impratio = TIMESTEP, mujoco.mjtCone.mjCONE_PYRAMIDAL, 1
     option.iterations, option.ls_iterations = 8, 16

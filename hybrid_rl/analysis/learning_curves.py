@@ -215,7 +215,7 @@ def plot(drawn: Sequence[Curve], x: str = "step", among: Sequence[str] = ()) -> 
 
     pairs = [(curve.metric, curve.task) for curve in drawn]
     metrics, tasks = (list(dict.fromkeys(names)) for names in zip(*pairs, strict=True))
-    wanted = [pair for pair in itertools.product(metrics, sorted(tasks)) if pair in pairs]
+    wanted = [pair for pair in itertools.product(metrics, tasks) if pair in pairs]
     each = [[c for c, own in zip(drawn, pairs, strict=True) if own == pair] for pair in wanted]
     styles = style.line_styles([*among, *(curve.label for curve in drawn)])
     across = _across(len(wanted), len(tasks) if len(metrics) > 1 else 0)
@@ -223,9 +223,9 @@ def plot(drawn: Sequence[Curve], x: str = "step", among: Sequence[str] = ()) -> 
     width, height = PANELS[across - 1]
     own = [note for curve in drawn for note in curve.notes if note.startswith(f"{curve.task}, ")]
     notes = style.wrapped(own, round(style.NOTE_WIDTH * across * width / PANELS[0][0]))
-    same = len({tuple(map(_entry, some)) for some in each}) == 1
-    one_legend = len(wanted) > 1 and same and not notes
-    entries = len(each[0]) if one_legend else down * max(map(len, each))
+    labels, texts = {curve.label for curve in drawn}, {*map(_entry, drawn)}
+    one_legend = len(wanted) > 1 and len(texts) == len(labels) and not notes
+    entries = len(texts) if one_legend else down * max(map(len, each))
     with matplotlib.rc_context(style.STYLE):
         size = width * across, height * down + style.ENTRY * (entries + len(notes))
         figure = style.blank(*size)
@@ -238,7 +238,7 @@ def plot(drawn: Sequence[Curve], x: str = "step", among: Sequence[str] = ()) -> 
                 narrower = round(PER_INCH * (PANELS[0][0] - width))
                 style.legend_below(axes, style.LEGEND_WIDTH - narrower)
         if one_legend:
-            style.legend_outside(panels[0])
+            style.legend_outside(*panels[: len(wanted)])
         for axes in panels[len(wanted) :]:
             axes.remove()
         style.write_notes(figure, notes)

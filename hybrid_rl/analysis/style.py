@@ -27,7 +27,7 @@ COLOUR_OF = {  # beginnings of labels that have a colour in every picture, plain
     BLUE: "sac, bc, ddpg, fourier_ergodic, Fourier, direct_bayesopt, direct_model_learning, "
     "koopman_direct, DAgger, nie, policy alone, the policy alone, without the planner",
     VERMILION: "hybrid_stochastic, hybrid_bc, the default, today's default, default, all three, "
-    "all velocities, settings=light, make train, its policy alone, kle3, KL, D, "
+    "all velocities, settings=light, settings=quick, make train, its policy alone, kle3, KL, D, "
     "DAIL, fisher, koopman_active, gain",
     GREEN: "nn_mppi, deterministic_mpc, planner alone, entropy, lqr_bayesopt, ou_noise, noise, "
     "koopman_noise, residual, minie, settings=annealed",
@@ -40,10 +40,6 @@ COLOUR_OF = {  # beginnings of labels that have a colour in every picture, plain
 }
 METHODS = {name: colour for colour, names in COLOUR_OF.items() for name in names.split(", ")}
 WORDS = {  # label or its beginning -> what a reader sees
-    "settings=mbpo": "hybrid_stochastic, settings=mbpo",
-    "settings=annealed": "hybrid_stochastic, settings=annealed",
-    "settings=fast": "hybrid_stochastic, settings=fast",
-    "settings=light": "hybrid_stochastic, settings=light",
     "sb3_sac_ours": "SAC of Stable-Baselines3, our world",
     "sb3_sac_gymnasium": "SAC of Stable-Baselines3, Gymnasium's world",
     "A_step_printed": "A-optimal by step, as printed",
@@ -142,13 +138,15 @@ def line_styles(labels: Iterable[str]) -> dict[str, dict[str, Any]]:
 
 
 def beginning(label: str, names: Iterable[str], best: Callable[..., str] = max) -> str:
-    """The longest (or with best=min the shortest) name whose words a label begins with, or ""."""
-    found = [name for name in names if re.match(rf"{re.escape(name)}(?![^\W_])", label)]
+    """The longest (best=min: shortest) name whose words a label (or algo=) begins with, or ""."""
+    found = [name for name in names if re.match(rf"(algo=)?{re.escape(name)}(?![^\W_])", label)]
     return best(found, key=len, default="")
 
 
 def words(label: str) -> str:
     """A label as a reader has it: "koopman_active prior=1e-06" is "koopman_active, prior 1e-6"."""
+    if label.startswith(("algo=", "settings=")):
+        return label  # as one types it
     name, first = beginning(label, WORDS), label.split(" ")[0]
     kept = name or ("" if "=" in first else first.rstrip(","))
     rest = label[len(kept) :].replace("_frozen", ", K frozen")
@@ -196,13 +194,13 @@ def legend_below(axes: "Axes", width: int = LEGEND_WIDTH) -> None:
     )
 
 
-def legend_outside(axes: "Axes") -> None:
+def legend_outside(*panels: "Axes") -> None:
     """A legend of these axes below all axes of their figure, whose layout is constrained."""
-    handles, labels = axes.get_legend_handles_labels()
-    columns = int(FIGURE_WIDTH / (max(map(len, labels), default=1) + 7))
-    below: Any = "outside lower center"
-    figure: Any = axes.get_figure()
-    figure.legend(handles, labels, loc=below, ncols=max(1, min(len(labels), columns)))
+    named = [zip(*reversed(axes.get_legend_handles_labels()), strict=True) for axes in panels]
+    of = dict(itertools.chain(*named))  # label -> handle
+    columns = max(1, min(len(of), int(FIGURE_WIDTH / (max(map(len, of), default=1) + 7))))
+    figure: Any = panels[0].get_figure()
+    figure.legend([*of.values()], [*of], loc="outside lower center", ncols=columns)
 
 
 def plain_log(axis: Any, narrow: bool = False) -> None:

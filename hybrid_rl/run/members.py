@@ -63,10 +63,11 @@ def expand_sweep(config: DictConfig, texts: Sequence[str]) -> list[Member]:
         finite = all(type(x) in (int, float) and isfinite(x) for x in numbers)
         if not numbers or not finite or len({*numbers}) < len(numbers):
             raise UsageError(f"sweep.{key}={values}: must be a list of different numbers")
-    if len(delays := lists.get("episode.delay", ())) > 1:  # each in episodes ready for all
-        times = (config.episode[key] for key in ("jitter", "lag", "longest"))
-        jitter, lag, longest = (x if type(x) in (int, float) else 0 for x in times)
-        config.episode.longest = max(max(delays) + jitter, lag, longest)
+    if any(len(lists.get(f"episode.{key}", ())) > 1 for key in ("delay", "jitter")):
+        times = ("delay", "jitter", "lag", "longest")  # each in episodes ready for all
+        each = [lists.get(f"episode.{key}", [config.episode[key]]) for key in times]
+        most = [max(x if type(x) in (int, float) else 0 for x in values) for values in each]
+        config.episode.longest = max(most[0] + most[1], *most[2:])
         texts.append(f"episode.longest={config.episode.longest}")
     members = []
     for values in product(*lists.values()):

@@ -135,8 +135,8 @@ def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
     try:
         values: dict[str, Any] = plain(config, resolve=True)
     except OmegaConfBaseException as error:
-        part, lacks = str(error.full_key).split(".")[0], re.findall("key '(.*)' not", str(error))
-        asks = [text for text in overrides if name(text) == part]
+        lacks = re.findall("key '(?:model_)?(.*)' not", str(error))
+        asks = [text for text in overrides if name(text) == str(error.full_key).split(".")[0]]
         lines = [f"{text}: {config.algo} has no {key}" for text in asks for key in lacks]
         raise UsageError([explain(error), *lines][-1]) from error
     for helper in ("sweep", "policy_learning"):

@@ -57,7 +57,7 @@ class Episode:
     jitter: NotNegative = 0.0  # [s] most that it is later than that; never before another
     loss: Fraction = 0.0  # probability that it never arrives: the last that did goes on acting
     lag: NotNegative | None = None  # [s] that it knows; None: delay + jitter
-    longest: NotNegative = 0.0  # [s] longest lag to be ready for; sweep.episode.delay raises it
+    longest: NotNegative = 0.0  # [s] longest lag to be ready for; a sweep of lags raises it
     sensor_noise: NotNegative | tuple[NotNegative, ...] = 0.0  # std of the observation, or [o]
     action_noise: NotNegative = 0.0  # [u] std of what is added to an action when it arrives
     observe: Count | tuple[Natural, ...] | None = None  # the first entries, or these; None: all

@@ -181,7 +181,7 @@ class Late(Around):
     def reset(self, key: Array) -> EnvState:
         """The first state, with no action sent."""
         state, count = super().reset(key), int(self._longest) + 1 + bool(self.longest)
-        random, drawing = self.jitter or self.loss, jax.random.fold_in(key, 8)
+        random, drawing = self.longest or self.jitter or self.loss, jax.random.fold_in(key, 8)
         none, waits = jnp.zeros((count, self.spec.act)), jnp.full(count, jnp.inf)
         sent = Sent(none, waits, none[0], none[0], jax.random.key_data(drawing) if random else None)
         data = _held(state.data, 0) if self._steps(state) else state.data

@@ -90,6 +90,7 @@ def test_methods_have_whole_lines_of_their_own_colours_while_there_are_colours()
         ("bc, experiment=robots/ant", "bc, experiment robots/ant"),
         ("num_demonstrations=5", "num demonstrations 5"),
         ("my_method", "my_method"),
+        ("algo=sac settings=quick", "algo=sac settings=quick"),
         ("sac", "sac"),
     ],
 )

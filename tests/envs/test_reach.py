@@ -61,6 +61,8 @@ def test_the_tip_is_a_site_or_the_end_of_the_last_link_and_home_is_within_ranges
 def test_a_site_that_is_not_there_and_a_free_base_are_one_line():
     with pytest.raises(UsageError, match=r"env\.site=nosite: choose one of tip, nail"):
         Reach(robot=ARM, site="nosite")
+    with pytest.raises(UsageError, match=r"env\.site=still: no servo moves it"):
+        Reach(robot=ARM.replace("<worldbody>", '<worldbody><site name="still"/>'), site="still")
     with pytest.raises(UsageError, match=r"robot=go1\.xml: must have a fixed base"):
         Reach(robot="go1.xml")
 
@@ -78,6 +80,26 @@ def test_slides_alone_are_an_arm_and_no_pose_is_out_of_their_ranges():
             u = jnp.clip((goal - state.info["servos"]) / STRIDE, -1, 1)
             state = jitted(env, "step")(state, u)
         assert state.metrics["success"] == 1
+
+
+def test_a_last_slide_that_moves_the_site_is_part_of_the_arm():
+    """As that of a SCARA, which brings the tip to the height of the pose."""
+    quill = '<geom size="0.01"/> <site name="quill"/>'
+    robot = ARM.replace('<geom size="0.01"/>', quill).replace('kp="9"', 'kp="20" kv="0.5"')
+    robot = robot.replace('"b" axis="0 1 0"', '"b" axis="0 0 1"')
+    robot = robot.replace('"grip" type="slide" range="0 0.1"', '"grip" type="slide" range="-1 1"')
+    env = Reach(robot=robot, site="quill", physics="native")
+    assert (env.spec.act, Reach(robot=robot).spec.act) == (3, 2)
+    state = jitted(env, "reset")(jax.random.key(0))
+    x, y, z, w, _, _, turn = state.info["target"]
+    yaw = 2 * np.arctan2(turn, w)  # of the second link
+    a = np.arctan2(y - 0.3 * np.sin(yaw), x - 0.3 * np.cos(yaw))
+    goal = jnp.array([a, yaw - a, z - 0.5])
+    assert abs(goal[2]) > 0.1
+    for _ in range(100):
+        u = jnp.clip((goal - state.info["servos"]) / STRIDE, -1, 1)
+        state = jitted(env, "step")(state, u)
+    assert state.metrics["success"] == 1
 
 
 def test_servos_that_move_to_the_angles_of_the_pose_reach_it(env):

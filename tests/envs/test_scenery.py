@@ -7,9 +7,11 @@ import mujoco
 import numpy as np
 import pytest
 
+from hybrid_rl.analysis import drawing
 from hybrid_rl.envs.adapters.gymnasium import GymnasiumEnv
 from hybrid_rl.envs.mujoco import mjcf, scenery
 from hybrid_rl.envs.mujoco.physics import Physics
+from hybrid_rl.envs.mujoco.simplified import simplified
 from hybrid_rl.types import EnvState, Spec
 
 ACROBOT = """
@@ -49,7 +51,7 @@ class Acrobot:
 
 def test_a_robot_without_light_is_drawn_bright_before_a_sky(can_draw):
     model = scenery.dressed(ACROBOT)
-    assert (model.nlight, model.ntex) == (0, 1)
+    assert (model.nlight, model.ntex) == (1, 1)
     if not can_draw:
         return
     env = GymnasiumEnv(Acrobot(), steps=1)
@@ -59,6 +61,19 @@ def test_a_robot_without_light_is_drawn_bright_before_a_sky(can_draw):
     red = picture[..., 0] > 2 * picture[..., 1:].max(-1) + 10
     assert picture[red][:, 0].mean() > 100
     assert picture[0].min() > 100  # the sky
+
+
+def test_a_floor_is_as_bright_as_its_texture_under_geoms_that_are_dark_by_default(can_draw):
+    """Go1's file has no light and nearly black geoms; the camera follows to 25 m."""
+    if not can_draw:
+        pytest.skip("nothing draws here")
+    scene = simplified("go1.xml", free=True)
+    pose = mjcf.load(scene).key_qpos[0] + 25 * (np.arange(19) == 0)
+    (picture,) = drawing.frames(scene, pose[None], 64, 48)
+    floor = picture[-1].astype(int)
+    assert floor.min() > 60
+    trunk = picture[16:32, 24:40].min(-1)
+    assert trunk.max() > 150
 
 
 @pytest.mark.parametrize("asset", ["halfcheetah.xml", "lander.xml"])

@@ -11,6 +11,7 @@ from tiny import TINY, call, refusal, rows_of, summary_of
 
 import hybrid_rl
 from hybrid_rl import evaluate, export, train
+from hybrid_rl.run import members
 from hybrid_rl.run.checkpoints import checkpoint
 
 SHORT = [*TINY, "algo=sac", "num_seeds=2", "total_steps=200", "eval_every=200", "log_every=100"]
@@ -60,7 +61,11 @@ def test_a_run_of_a_sweep_is_the_run_alone(swept, tmp_path):
 
 @pytest.mark.parametrize(
     ("task", "key", "value"),
-    [("gymnasium", "model_planner.rest", 0.9), ("pendulum", "episode.delay", 0.1)],
+    [
+        ("gymnasium", "model_planner.rest", 0.9),
+        ("pendulum", "episode.delay", 0.1),
+        ("pendulum", "episode.jitter", 0.1),
+    ],
 )
 def test_a_sweep_of_a_world_outside_or_of_one_that_is_late(task, key, value, tmp_path):
     """Training and evaluation have the numbers of each run, and environments its seeds."""
@@ -73,6 +78,22 @@ def test_a_sweep_of_a_world_outside_or_of_one_that_is_late(task, key, value, tmp
     for mine, theirs in zip(rows(swept / "1"), rows(alone), strict=True):
         assert list(mine) == list(theirs)
         np.testing.assert_allclose([*mine.values()], [*theirs.values()], 1e-2, 1e-2)
+
+
+@pytest.mark.parametrize(
+    ("line", "longest"),
+    [
+        (["sweep.episode.delay=[0,0.2]", "episode.jitter=0.1"], 0.3),
+        (["sweep.episode.jitter=[0,0.1]", "episode.delay=0.2"], 0.3),
+        (["sweep.episode.jitter=[0,0.1]", "sweep.episode.delay=[0.2,0]"], 0.3),
+        (["sweep.episode.jitter=[0,0.1]", "episode.lag=0.4"], 0.4),
+        (["sweep.episode.jitter=[0,0.1]", "episode.longest=0.5"], 0.5),
+        (["sweep.episode.jitter=[0.1]"], 0),
+    ],
+)
+def test_episodes_of_a_sweep_are_ready_for_its_longest_lag(line, longest):
+    made = members.load(["task=pendulum", "algo=sac", *line])
+    assert [each.config.episode.longest for each in made] == [pytest.approx(longest)] * len(made)
 
 
 def test_one_value_is_the_run_without_a_sweep_bit_for_bit(tmp_path):
