@@ -88,7 +88,8 @@ class Robot(Made):
         if missing := needed - {*dir(self.kind)}:
             raise UsageError(f"env.make={self.name}: lacks {', '.join(sorted(missing))}")
         try:
-            return Form(*(getattr(self.kind, name, None) for name in Form.__match_args__))
+            given: Any = (getattr(self.kind, name, None) for name in Form.__match_args__)
+            return Form(*given)
         except FieldError as error:
             raise UsageError(f"env.make={self.name}: {error.line}") from error
 
