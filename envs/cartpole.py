@@ -34,14 +34,12 @@ class Cartpole(Body):
 
     reward: Literal["cos", "dm_control"] = "cos"
 
+    _asset = "cartpole.xml"
+
     @property
     def spec(self) -> Spec:
         """Observation size, action size and decision interval."""
         return Spec(obs=5, act=1, dt=0.0165)
-
-    @property
-    def _asset(self) -> str:
-        return "cartpole.xml"
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""
@@ -53,22 +51,17 @@ class Cartpole(Body):
         """The state after one decision. action: [1] in [-1, 1]."""
         action = jnp.clip(action, -1.0, 1.0)
         data = self._body.step(state.data, action, 1)
-        return _state(
-            data, jnp.cos(data.qpos[1]) if self.reward == "cos" else _dm_control(data, action)
-        )
+        cos, x, w = jnp.cos(data.qpos[1]), data.qpos[0], data.qvel[1]
+        if self.reward == "cos":
+            return _state(data, cos)
+        centred = (1 + jnp.exp(-log(10) * (x / 2) ** 2)) / 2
+        quiet = (4 + (1 - action[0] ** 2)) / 5
+        calm = (1 + jnp.exp(-log(10) * (w / 5) ** 2)) / 2
+        return _state(data, (1 + cos) / 2 * centred * quiet * calm)
 
     def quantities(self, obs: Array) -> dict[str, Array]:
         """Position [m] and speed [m/s] of the cart, and the pole's height, -1 to 1, at obs [5]."""
         return {"position": obs[0], "speed": obs[1], "height": obs[2]}
-
-
-def _dm_control(data: PhysicsState, action: Array) -> Array:
-    """Reward [] of the DeepMind Control Suite."""
-    upright = (1 + jnp.cos(data.qpos[1])) / 2
-    centred = (1 + jnp.exp(-log(10) * (data.qpos[0] / 2) ** 2)) / 2
-    quiet = (4 + (1 - action[0] ** 2)) / 5
-    calm = (1 + jnp.exp(-log(10) * (data.qvel[1] / 5) ** 2)) / 2
-    return upright * centred * quiet * calm
 
 
 def _state(data: PhysicsState, reward: Array) -> EnvState:

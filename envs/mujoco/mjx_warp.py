@@ -114,7 +114,11 @@ def _step(
             read = [now.sensordata, *(_read(now, name).ravel() for name in reads)]
             outputs["sensordata"] = jnp.concatenate(read)
         elif not late.all():  # sensors of the new positions and velocities
-            now = mjx.forward(model, data) if impl == "warp" else _sense(model, data)
+            if impl == "warp":
+                now = mjx.forward(model, data)
+            else:
+                now = mjx.sensor_pos(model, mjx.fwd_position(model, data))
+                now = mjx.sensor_vel(model, mjx.fwd_velocity(model, now))
             outputs["sensordata"] = jnp.where(late, data.sensordata, now.sensordata)
     if impl == "jax":
         return outputs
@@ -128,12 +132,6 @@ def _read(data: mjx.Data, name: str) -> jax.Array:
     """The field `name` of MjData, of which some belong to the implementation."""
     own = getattr(data._impl, name, None)
     return getattr(data, name) if own is None else own
-
-
-def _sense(model: mjx.Model, data: mjx.Data) -> mjx.Data:
-    """`data` with the sensors of its present positions and velocities, in pure JAX."""
-    data = mjx.sensor_pos(model, mjx.fwd_position(model, data))
-    return mjx.sensor_vel(model, mjx.fwd_velocity(model, data))
 
 
 @cache
