@@ -95,7 +95,10 @@ class SawyerPush:
         key_block, key_turn, key_target = jax.random.split(key, 3)
         home = jnp.asarray(HOME, jnp.float32)
         tip = jnp.asarray(TIP.constant_pose(HOME)[0][:2])
-        block = jnp.asarray(self.block, jnp.float32)[None] + self.block_spread * _disc(key_block)
+        angle, area = jax.random.uniform(key_block, (2, TRIES), jnp.float32)
+        towards = jnp.stack((jnp.cos(2 * jnp.pi * angle), jnp.sin(2 * jnp.pi * angle)), 1)
+        disc = self.block_spread * (jnp.sqrt(area)[:, None] * towards)
+        block = jnp.asarray(self.block, jnp.float32)[None] + disc
         block = _first_far(block, tip[None], CLEARANCE)
         turn = jax.random.uniform(key_turn, (), jnp.float32, -self.block_turn, self.block_turn)
         low, high = (jnp.asarray(b, jnp.float32) for b in (self.target_low, self.target_high))
@@ -211,13 +214,6 @@ class SawyerPush:
         metrics = {"success": success.astype(jnp.float32), "distance": distance}
         ended = success & self.terminate
         return EnvState(data, obs, reward, ended, metrics=metrics, info=info)
-
-
-def _disc(key: Array) -> Array:
-    """[TRIES, 2] uniform points in the unit disc."""
-    angle, area = jax.random.uniform(key, (2, TRIES), jnp.float32)
-    direction = jnp.stack((jnp.cos(2 * jnp.pi * angle), jnp.sin(2 * jnp.pi * angle)), 1)
-    return jnp.sqrt(area)[:, None] * direction
 
 
 def _first_far(points: Array, other: Array, distance: float) -> Array:

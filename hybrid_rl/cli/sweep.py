@@ -273,15 +273,11 @@ def _wait(jobs: dict[int, Any], results: dict[int, Result], most: float = math.i
     while len(results.keys() & jobs.keys()) < len(jobs) and time.monotonic() - began < most:
         for number, job in jobs.items():
             if number not in results and job.done():
-                results[number] = _result(job)
+                try:
+                    results[number] = job.results()[0].return_value
+                except Exception as error:
+                    line = f"lost: {str(error).strip().splitlines()[0]}"
+                    line += f"; see {relative(job.paths.stderr)}"
+                    results[number] = {"code": 1, "line": line}
                 print(f"job {number} ends: {results[number]['line']}", flush=True)
         time.sleep(POLL)
-
-
-def _result(job: Any) -> Result:
-    """The result of a job of Submitit's that has ended."""
-    try:
-        return job.results()[0].return_value
-    except Exception as error:
-        line = str(error).strip().splitlines()[0]
-        return {"code": 1, "line": f"lost: {line}; see {relative(job.paths.stderr)}"}

@@ -124,7 +124,10 @@ class _Plan:
 
     def improve(self, v: Array) -> Array:
         """Corrections [T, m] after gradient steps from v [T, m]."""
-        most = self._most()
+        regulator, room, most = self.of.regulator, self.of._room(), jnp.inf
+        if regulator is not None and room is not None:  # none where it alone is clipped: its loop
+            u = regulator.mean(self.params.policy, self.x)  # is not linear
+            most = jnp.where(jnp.all(jnp.abs(u) < 1), room.most, jnp.inf)
 
         def iterate(v: Array, _: None) -> tuple[Array, None]:
             path, bound = self.roll(v), self.of.costate_bound
@@ -135,14 +138,6 @@ class _Plan:
             return jnp.clip(jnp.clip(u, -1, 1) - (path.u - v), -most, most), None
 
         return jax.lax.scan(iterate, v, None, length=self.of.iterations)[0]
-
-    def _most(self) -> Array | float:
-        """The bound of |v|; none where the regulator alone is clipped: its loop is not linear."""
-        regulator, room = self.of.regulator, self.of._room()
-        if regulator is None or room is None:
-            return jnp.inf
-        u = regulator.mean(self.params.policy, self.x)
-        return jnp.where(jnp.all(jnp.abs(u) < 1), room.most, jnp.inf)
 
     def _gain(self, x: Array) -> Array | float:
         """The gain W at x [T, n]."""

@@ -10,8 +10,7 @@ With `ahead` T > 0 the target instead values the way to s_i: its T positions on 
 the last one s_i (thesis section 5.3.1).
 """
 
-from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple, cast
 
 import jax
 import jax.numpy as jnp
@@ -43,14 +42,9 @@ class GoalController:
     ahead: Natural = 0  # T positions on the way to a candidate; 0: the candidate alone
 
     def __post_init__(self) -> None:
-        if self.ahead and self._along is None:
+        if self.ahead and getattr(self.target, "along", None) is None:
             words = "this target cannot score a path; use target=entropy_reduction"
             raise FieldError(self, "ahead", words)
-
-    @property
-    def _along(self) -> Callable[[Params, Array], Array] | None:
-        """The value [] of measurements on a path [T, v]; None if the target has none."""
-        return getattr(self.target, "along", None)
 
     def init(self, spec: Spec) -> GoalState:
         """No goal yet."""
@@ -76,11 +70,11 @@ class GoalController:
 
     def _values(self, params: Params, start: Array, s: Array) -> Array:
         """The value [N] of each candidate s [N, v], or of the way to it from `start` [v]."""
-        if not self.ahead or self._along is None:
+        if not self.ahead:
             return jax.vmap(self.target.log_density, (None, 0))(params, s)
         steps = jnp.arange(1, self.ahead + 1)[None, :, None] / self.ahead
         ways = start[None, None] + steps * (s - start[None])[:, None]
-        return jax.vmap(self._along, (None, 0))(params, ways)
+        return jax.vmap(cast(Any, self.target).along, (None, 0))(params, ways)
 
     def greedy(self) -> "GoalController":
         """The same controller: it has no exploration noise."""

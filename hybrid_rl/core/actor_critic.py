@@ -66,6 +66,8 @@ class ActorCritic:
 
     data: ClassVar[str] = "uniform"
     owns: ClassVar[tuple[str, ...]] = ("policy", "critic")
+    batches: ClassVar[int] = 1
+    during_random: ClassVar[bool] = False  # whether it also learns while decisions are random
 
     def begun(
         self,
@@ -162,8 +164,6 @@ class SoftActorCritic(ActorCritic):
     target_entropy: float | None = None  # [nat]; None: -m
     during_random: bool = False  # whether it also learns while decisions are random
     max_grad_norm: Positive | None = None  # of the policy's gradient; None: no limit
-
-    batches: ClassVar[int] = 1
 
     def recorded(self, state: ActorCriticState, batch: Batch, noise: Array) -> Imagined:
         """The decisions of `batch`, each followed by one of the policy, for noise [B, m]."""

@@ -9,7 +9,7 @@ the original has one. A time limit does not terminate the task.
 """
 
 from dataclasses import KW_ONLY
-from typing import Any, ClassVar
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -29,9 +29,6 @@ class DDPG(ActorCritic):
     critic_learning_rate: Positive = 1e-3
     tau: Share = 0.01
     batch_size: Count = 128
-
-    batches: ClassVar[int] = 1
-    during_random: ClassVar[bool] = False  # starts after the random decisions
 
     def init(self, key: Array, spec: Spec) -> ActorCriticState:
         """Initial parameters, optimisers and targets. The key is consumed."""

@@ -106,7 +106,13 @@ def restore(
         for candidate in sorted(wanted & checkpoints.keys(), reverse=True):
             path = checkpoints[candidate]
             before = _identity(path)
-            read, flaw = _attempt(path, like)
+            read, flaw = None, verify(path)
+            try:
+                read = leaves.read(path, like) if flaw is None else None
+            except CheckpointError:
+                raise
+            except (OSError, ValueError) as problem:  # TensorStore raises ValueError
+                flaw = " ".join(str(problem).split())
             if before is None or _identity(path) != before:
                 break  # deleted or replaced while it was read: begin again
             if read is not None:
@@ -125,19 +131,6 @@ def _identity(path: Path) -> tuple[int, int, int] | None:
     except OSError:
         return None
     return status.st_dev, status.st_ino, status.st_mtime_ns
-
-
-def _attempt(path: Path, like: Like) -> tuple[tuple[PyTree, dict] | None, str]:
-    """State and meta of the checkpoint at `path`, or None and why it has none."""
-    flaw = verify(path)
-    if flaw is not None:
-        return None, flaw
-    try:
-        return leaves.read(path, like), ""
-    except CheckpointError:
-        raise
-    except (OSError, ValueError) as problem:  # TensorStore raises ValueError
-        return None, " ".join(str(problem).split())
 
 
 def _sweep(folder: Path) -> None:
