@@ -60,8 +60,7 @@ ROOMS = "beliefs constraints controllers critics features learners models object
 ROOMS += " proposals rewards schedules targets"
 FREE = {  # numbers without a range: of any value, or checked with another field or the world
     *("Aim.target", "EmbeddingLearner.capacity", "EmbeddingLearner.interval"),
-    *("Limit.least", "Limit.most", "ModelBased.target_entropy"),
-    "ModelBased.value_steps",
+    *("Limit.least", "Limit.most", "ModelBased.target_entropy", "ModelBased.value_steps"),
     *("Run.direction", "SAC.target_entropy", "SoftActorCritic.target_entropy"),
     *(f"{name}.updates" for name in ("ActorCritic", "BehaviourCloning", "DDPG", "FlashSAC", "SAC")),
     *(f"{name}.updates" for name in ("InformationLearner", "ModelBased", "ModelLearner")),

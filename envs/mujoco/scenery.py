@@ -55,11 +55,8 @@ def _first(env: Any) -> PhysicsState:
 
 def simulated(state: EnvState) -> list[PhysicsState]:
     """The states of MuJoCo's models in the state of an environment."""
-
-    def is_one(x: Any) -> bool:
-        return isinstance(x, PhysicsState)
-
-    return [x for x in jax.tree.leaves(state.data, is_leaf=is_one) if is_one(x)]
+    leaves = jax.tree.leaves(state.data, is_leaf=lambda x: isinstance(x, PhysicsState))
+    return [x for x in leaves if isinstance(x, PhysicsState)]
 
 
 def dressed(scene: str) -> mujoco.MjModel:

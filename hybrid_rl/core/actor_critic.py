@@ -147,10 +147,6 @@ class ActorCritic:
         policy, optimiser = adam_step(rate, grads, state.policy_optimiser, state.policy)
         return state.replace(policy=policy, policy_optimiser=optimiser), (value, more, norm)
 
-    def followed(self, old: Any, new: Any) -> Any:
-        """The parameters of a target after it has followed those of `new`."""
-        return statistics.soft_target_update(old, new, self.tau)
-
 
 @part
 class SoftActorCritic(ActorCritic):
@@ -218,7 +214,7 @@ class SoftActorCritic(ActorCritic):
         rate = self.factor(params) * self.alpha_learning_rate
         grad, optimiser = along.entropy - aim, state.alpha_optimiser
         log_alpha, optimiser = adam_step(rate, grad, optimiser, state.log_alpha)
-        target = self.followed(state.target, state.critic)
+        target = statistics.soft_target_update(state.target, state.critic, self.tau)
         metrics = {
             "sac/policy_loss": along.loss,
             "sac/entropy": along.entropy,

@@ -15,6 +15,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.core import statistics
 from hybrid_rl.core.actor_critic import ActorCritic, ActorCriticState
 from hybrid_rl.fields import Count, Positive, Share, part
 from hybrid_rl.types import Batch, Params, Spec
@@ -54,6 +55,6 @@ class DDPG(ActorCritic):
         rate = factor * self.policy_learning_rate
         state, (of_policy, *_) = self.policy_step(state, rate, loss)
         metrics = {"ddpg/critic_loss": of_critic, "ddpg/policy_loss": of_policy, "ddpg/q": q}
-        policy = self.followed(state.target_policy, state.policy)
-        critic = self.followed(state.target, state.critic)
+        old, new = (state.target_policy, state.target), (state.policy, state.critic)
+        policy, critic = statistics.soft_target_update(old, new, self.tau)
         return state.replace(target_policy=policy, target=critic), metrics

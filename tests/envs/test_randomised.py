@@ -56,9 +56,7 @@ def test_each_episode_and_each_motor_has_its_own_and_keeps_it():
 def test_a_range_has_two_ends_in_any_order():
     with pytest.raises(ValueError, match=r"randomise.mass=.*: must have 2 entries"):
         Episode(make("cartpole"), randomise={"mass": (2, 1, 3)})
-    drawn = [
-        states(Episode(make("cartpole"), randomise={"mass": ends})) for ends in ((1, 2), (2, 1))
-    ]
+    drawn = [states(Episode(make("cartpole"), randomise={"mass": p})) for p in ((1, 2), (2, 1))]
     np.testing.assert_array_equal(*drawn)
 
 
