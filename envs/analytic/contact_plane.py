@@ -108,8 +108,11 @@ class ContactPlane:
             x, touched = carry
             x = move(x, self.acceleration * u, self.drag, DT / SUBSTEPS)
             for _corner in range(CORNER):
-                x, touches = self._pushed_out(x, pose)
-                touched = touched | touches
+                d, normal = jax.value_and_grad(self.distance)(x[:2], pose)
+                p = x[:2] + (self.radius - d) * normal  # outside of the objects, without
+                v = x[2:] - jnp.minimum(x[2:] @ normal, 0) * normal  # velocity into them
+                x = jnp.where(d < self.radius, jnp.concatenate([p, v]), x)
+                touched = touched | (d < self.radius)
             return (x, touched), None
 
         first = body.x, jnp.zeros((), bool)
@@ -125,14 +128,6 @@ class ContactPlane:
         false = self.false_contact * jnp.linalg.norm(change) / 2
         wrong = jax.random.uniform(key) < jnp.where(touch > 0, self.missed, false)
         return jnp.where(wrong, 1 - touch, touch)
-
-    def _pushed_out(self, x: Array, pose: Array) -> tuple[Array, Array]:
-        """x [4] outside of the objects, without velocity into them; whether it was in contact."""
-        d, normal = jax.value_and_grad(self.distance)(x[:2], pose)
-        touches = d < self.radius
-        p = x[:2] + (self.radius - d) * normal
-        v = x[2:] - jnp.minimum(x[2:] @ normal, 0) * normal
-        return jnp.where(touches, jnp.concatenate([p, v]), x), touches
 
     def _state(self, body: Body, touch: Array, measured: Array) -> EnvState:
         return EnvState(body, body.x, measured, metrics=metrics_of(touch, body.pose))

@@ -63,15 +63,10 @@ class StagesController:
         nothing = {name: jnp.full(m.shape, jnp.nan, m.dtype) for name, m in shapes.items()}
         branches = [branch_of(name, nothing) for name in names]
         ends = jnp.cumsum(jnp.array(decisions, jnp.int32))
-        stage = jnp.sum(self._count(params, state) >= ends)
+        count: Any = params.decisions if self.of_run else state.count
+        stage = jnp.sum((jnp.inf if count is None else count) >= ends)
         u, each, metrics = jax.lax.switch(stage, branches, state.each)
         return u, StagesState(each, state.count + 1), metrics
-
-    def _count(self, params: Params, state: StagesState) -> Array | float:
-        """Decisions [] of the episode or of the run so far."""
-        if not self.of_run:
-            return state.count
-        return jnp.inf if params.decisions is None else params.decisions
 
     def greedy(self) -> "StagesController":
         """The same stages without exploration."""
