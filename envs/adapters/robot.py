@@ -96,7 +96,7 @@ class Robot(Made):
     @property
     def spec(self) -> Spec:
         """Its sizes, and the time between decisions."""
-        return Spec(int(self.form.obs), len(self.form.low), self.form.dt)
+        return Spec(int(self.form.obs), len(self.form.low), float(self.form.dt))
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:

@@ -86,7 +86,12 @@ def save(folder: Path, step: int, state: PyTree, meta: dict, keep: int = KEEP) -
         if not isinstance(problem, Exception):  # Ctrl-C and the like
             raise
         raise CheckpointError(line) from problem
-    _prune(folder, step, keep)
+    known = steps(folder)
+    sound = [s for s in known if s <= step and not verify(folder / str(s), False)]
+    for old in set(known) - set(sound[-keep:]):  # those that the new one replaces
+        with contextlib.suppress(OSError):
+            (folder / str(old)).rename(_hidden(folder, f"{old}.pruned"))
+    _sweep(folder)
     return path
 
 
@@ -151,16 +156,6 @@ def _rename(draft: Path, path: Path) -> Path:
     draft.rename(path)
     sync(path.parent)
     return path
-
-
-def _prune(folder: Path, newest: int, keep: int) -> None:
-    """Delete the checkpoints that the new one replaces."""
-    known = steps(folder)
-    sound = [s for s in known if s <= newest and not verify(folder / str(s), False)]
-    for step in set(known) - set(sound[-keep:]):
-        with contextlib.suppress(OSError):
-            (folder / str(step)).rename(_hidden(folder, f"{step}.pruned"))
-    _sweep(folder)
 
 
 def _refusal(folder: Path, step: int, problem: BaseException) -> str:
