@@ -261,7 +261,7 @@ class Known(NamedTuple):
 @cache
 def _known(env: External) -> Known:
     """What one copy declares."""
-    one: Any = None
+    one = None
     try:
         one = env.one()
         dt = env.dt or _time_step(one)
@@ -272,6 +272,7 @@ def _known(env: External) -> Known:
         dt, fault = 0.0, blame(error)
     if fault:
         raise UsageError(f"env.{'make' if env.make else 'id'}={env.name}: {fault}")
+    assert one is not None
     space, obs, seen = one.action_space, one.observation_space, one.env.observation_space
     assert isinstance(space, Box)
     limit = None

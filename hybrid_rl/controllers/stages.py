@@ -63,7 +63,7 @@ class StagesController:
         nothing = {name: jnp.full(m.shape, jnp.nan, m.dtype) for name, m in shapes.items()}
         branches = [branch_of(name, nothing) for name in names]
         ends = jnp.cumsum(jnp.array(decisions, jnp.int32))
-        count: Any = params.decisions if self.of_run else state.count
+        count = params.decisions if self.of_run else state.count
         stage = jnp.sum((jnp.inf if count is None else count) >= ends)
         u, each, metrics = jax.lax.switch(stage, branches, state.each)
         return u, StagesState(each, state.count + 1), metrics
