@@ -264,8 +264,8 @@ def _known(env: External) -> Known:
     one = None
     try:
         one = env.one()
-        dt = env.dt or _time_step(one)
-        fault = _fault(one) or ("" if dt else f"does not say its time step; {DT}")
+        fault, dt = _fault(one), env.dt or _time_step(one)  # some declare it in a reset
+        fault = fault or ("" if dt else f"does not say its time step; {DT}")
     except UsageError:
         raise
     except FAULTS as error:
