@@ -34,14 +34,12 @@ class Cartpole(Body):
 
     reward: Literal["cos", "dm_control"] = "cos"
 
+    _asset = "cartpole.xml"
+
     @property
     def spec(self) -> Spec:
         """Observation size, action size and decision interval."""
         return Spec(obs=5, act=1, dt=0.0165)
-
-    @property
-    def _asset(self) -> str:
-        return "cartpole.xml"
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""

@@ -9,7 +9,6 @@ Source: Erez, Tassa, Todorov 2011; parameters of Gymnasium's Hopper-v5; pybullet
 """
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 import jax.numpy as jnp
 from jax import Array
@@ -21,7 +20,7 @@ from hybrid_rl.envs.locomotion import PlanarLegs
 class Hopper(PlanarLegs):
     """Hopper; `physics` is native, mjx, warp or auto."""
 
-    asset: ClassVar[str] = "hopper.xml"
+    _asset = "hopper.xml"
 
     def alive(self, qpos: Array, qvel: Array) -> Array:
         """Whether [] it is upright at qpos without x [5], and within all bounds with qvel [6]."""

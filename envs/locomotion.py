@@ -110,20 +110,15 @@ def pybullet_reward(
 
 @part
 class PlanarLegs(Runner):
-    """A robot by its `asset` and `alive`; `physics` is native, mjx, warp or auto."""
+    """A robot by its `_asset` and `alive`; `physics` is native, mjx, warp or auto."""
 
     reward: Literal["gymnasium", "pybullet"] = "gymnasium"
     velocity_limit: Positive | None = 10.0  # of observed velocities [m/s, rad/s]
-    asset: ClassVar[str]
     steps, dt, hidden, spread = 4, 0.008, 1, 0.005
 
     @abstractmethod
     def alive(self, qpos: Array, qvel: Array) -> Array:
         """Whether [] an episode goes on at qpos without x [nq - 1] and qvel [nv]."""
-
-    @property
-    def _asset(self) -> str:
-        return self.asset
 
     def _obs(self, data: PhysicsState) -> Array:
         seen, limit = data.qvel, self.velocity_limit

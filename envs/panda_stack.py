@@ -173,24 +173,17 @@ class PandaStack:
         error = jnp.abs(block - goal)
         placed = (_norm(error[:2]) < self.success_distance) & (error[2] < LEVEL)
         success = placed & (closed == 0) & (_norm(data.qvel[BLOCK_SPEED]) < QUIET)
-        obs = self._observation(tool, block, goal, closed[None], wrench)
+        if self.observation == "relative":
+            parts = block - tool, goal - block, closed[None]
+        elif self.observation == "stage":
+            parts = jnp.where(closed > 0, goal - block, block - tool), closed[None], block[2:]
+        else:
+            parts = tool, block, closed[None], wrench, *([goal] if self.base_spread else [])
         metrics = {"success": success, "grasped": grasped, "distance": _norm(block - goal)}
         metrics = {name: value.astype(jnp.float32) for name, value in metrics.items()}
         reward = stage - self.penalty * (_norm(wrench) + _norm(action))
         ended = success & self.terminate
-        return EnvState(data, obs, reward, ended, metrics=metrics, info=info)
-
-    def _observation(
-        self, tool: Array, block: Array, goal: Array, closed: Array, wrench: Array
-    ) -> Array:
-        """o, of positions [3], whether the hand is commanded to close [1], and its wrench [6]."""
-        if self.observation == "relative":
-            return jnp.concatenate((block - tool, goal - block, closed))
-        if self.observation == "stage":
-            left = jnp.where(closed > 0, goal - block, block - tool)
-            return jnp.concatenate((left, closed, block[2:]))
-        obs = jnp.concatenate((tool, block, closed, wrench))
-        return jnp.concatenate((obs, goal)) if self.base_spread else obs
+        return EnvState(data, jnp.concatenate(parts), reward, ended, metrics=metrics, info=info)
 
 
 def _norm(x: Array) -> Array:

@@ -20,11 +20,7 @@ from hybrid_rl.fields import part
 class Swimmer(Runner):
     """Swimmer; `physics` is native, mjx, warp or auto."""
 
-    steps, dt, hidden = 4, 0.04, 2
-
-    @property
-    def _asset(self) -> str:
-        return "swimmer.xml"
+    steps, dt, hidden, _asset = 4, 0.04, 2, "swimmer.xml"
 
     def _paid(self, data: PhysicsState, control: Array, speed: Array) -> tuple[Array, Array]:
         return speed - 1e-4 * (control**2).sum(), jnp.zeros((), bool)

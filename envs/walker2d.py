@@ -9,7 +9,6 @@ Source: Erez, Tassa, Todorov 2011; parameters of Gymnasium's Walker2d-v5; pybull
 """
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 import jax.numpy as jnp
 from jax import Array
@@ -21,7 +20,7 @@ from hybrid_rl.envs.locomotion import PlanarLegs
 class Walker2d(PlanarLegs):
     """Walker; `physics` is native, mjx, warp or auto."""
 
-    asset: ClassVar[str] = "walker2d.xml"
+    _asset = "walker2d.xml"
 
     def alive(self, qpos: Array, qvel: Array) -> Array:
         """Whether [] it is upright at qpos without x [8]."""

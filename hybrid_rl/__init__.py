@@ -23,15 +23,12 @@ from typing import Any
 
 from hybrid_rl.version import __version__ as __version__
 
-
-def _public() -> dict[str, tuple[str, str]]:
-    """Public name -> its module and its name there, as __init__.pyi lists them."""
-    listed = ast.parse(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8")).body
-    imports = [(node.module, node.names[0]) for node in listed if isinstance(node, ast.ImportFrom)]
-    return {str(a.asname).lstrip("_"): (str(home), a.name) for home, a in imports}
-
-
-_PUBLIC = _public()
+_LISTED = ast.parse(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8")).body
+_PUBLIC = {  # name -> its module and its name there
+    str(node.names[0].asname).lstrip("_"): (str(node.module), node.names[0].name)
+    for node in _LISTED
+    if isinstance(node, ast.ImportFrom)
+}
 __all__ = sorted(_PUBLIC)  # pyright: ignore[reportUnsupportedDunderAll]
 
 

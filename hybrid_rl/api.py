@@ -84,12 +84,7 @@ class Result(dict[str, Any]):
     def __init__(self, summary: Mapping[str, Any], run: Run | None = None) -> None:
         super().__init__(summary)
         self._run = run  # of an agent; None: config.yaml has the parts
-        self._folder = Path(self["run_dir"]).absolute()
-
-    @property
-    def folder(self) -> Path:
-        """The run folder, as an absolute path: it holds after the working folder changes."""
-        return self._folder
+        self.folder = Path(self["run_dir"]).absolute()  # holds after the working folder changes
 
     def curves(self, metric: str = "eval/return") -> "list[Curve]":
         """The curve of a metric, with arrays; see hybrid_rl.curves."""

@@ -50,11 +50,10 @@ GROUPS = {name: f"with task=T: a key of its {name}" for name in ("env", "episode
 
 def main() -> None:
     """The command."""
-    given, changes = read(__doc__, ARGUMENTS, GROUPS)
-    if bool(given["task"]) == bool(given["run"]) or (given["policy"] and given["task"]):
-        raise UsageError("task, run: give one of them; policy=FILE is written from run=DIR")
-    if given["run"] and (changes or given["expert"]):
-        raise UsageError("env, episode, expert: a run has its own; give them with task=T")
+    given, changes = read(__doc__, ARGUMENTS, GROUPS, ("task", "run"))
+    others = ["policy"] if given["task"] else ["expert", *changes]
+    if wrong := [name for name in others if name in changes or given[name]]:
+        raise UsageError(f"{wrong[0]}: give it with {'run=DIR' if given['task'] else 'task=T'}")
     if given["policy"]:
         _write_policy(given)
         return

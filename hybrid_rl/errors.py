@@ -86,7 +86,9 @@ class SourceOf:
         except UsageError:
             raise
         except FAULTS as error:
-            if isinstance(error, ValueError) and ours(error) and user_line(error) is None:
+            raised = traceback.extract_tb(error.__traceback__)[-1].filename
+            own = not OURS.isdisjoint(Path(raised).parents)  # a line of this package raised it
+            if isinstance(error, ValueError) and own and user_line(error) is None:
                 raise  # it says what to change
             line = user_line(error, self.file)
             if line is None:
@@ -121,12 +123,6 @@ def user_line(error: BaseException, own: str = "", ours: bool = False) -> str | 
         if folders & owners:
             return None
     return None
-
-
-def ours(error: BaseException) -> bool:
-    """Whether a line of this package raised it."""
-    frames = traceback.extract_tb(error.__traceback__)
-    return bool(frames) and not OURS.isdisjoint(Path(frames[-1].filename).parents)
 
 
 def blame(error: BaseException) -> str:

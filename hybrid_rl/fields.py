@@ -162,6 +162,16 @@ def check_all(part: Any) -> Any:
     return part
 
 
+def check_span(part: Any) -> None:
+    """FieldError unless `low` and `high` are as many numbers, one or more, each low below its high.
+
+    Of numbers, or lists of them.
+    """
+    low, high = np.atleast_1d(part.low), np.atleast_1d(part.high)
+    if low.shape != high.shape or not (low.size and (low < high).all()):
+        raise FieldError(part, "low", f"must lie below high={as_yaml(part.high)}, number by number")
+
+
 def check(part: object, name: str, kind: Any) -> Any:
     """The value of a field as its type has it: tuples for lists, floats for whole numbers.
 

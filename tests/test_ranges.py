@@ -60,8 +60,7 @@ ROOMS = "beliefs constraints controllers critics features learners models object
 ROOMS += " proposals rewards schedules targets"
 FREE = {  # numbers without a range: of any value, or checked with another field or the world
     *("Aim.target", "EmbeddingLearner.capacity", "EmbeddingLearner.interval"),
-    *("Limit.least", "Limit.most", "ModelBased.branch_memory", "ModelBased.target_entropy"),
-    "ModelBased.value_steps",
+    *("Limit.least", "Limit.most", "ModelBased.target_entropy", "ModelBased.value_steps"),
     *("Run.direction", "SAC.target_entropy", "SoftActorCritic.target_entropy"),
     *(f"{name}.updates" for name in ("ActorCritic", "BehaviourCloning", "DDPG", "FlashSAC", "SAC")),
     *(f"{name}.updates" for name in ("InformationLearner", "ModelBased", "ModelLearner")),
@@ -184,7 +183,6 @@ TOGETHER = [  # what is made, and how the line begins, behind the name of the pa
         r"next_state=true: .*reward_discount=0",
     ),
     (branches(steps=3, value_steps=4), "value_steps=4: .*steps=3"),
-    (branches(branch_memory=300), "branch_memory=300: .*256"),
     (lambda: EnsembleQ(pessimism=-1), "pessimism=-1"),
     (lambda: CategoricalQ(hidden=(8, 16)), r"hidden=\[8, 16\]"),
     (lambda: UnitGaussian(hidden=()), r"hidden=\[\]"),
@@ -199,12 +197,12 @@ TOGETHER = [  # what is made, and how the line begins, behind the name of the pa
     (lambda: Mixture(stds=(0.1,)), "stds="),
     (lambda: Mixture(weights=(0.0, 1.0)), "weights="),
     (lambda: KnownReward(CHEETAH), "needs an environment with a known reward"),
-    (lambda: Aim(CHEETAH, "altitude"), "quantity=altitude: choose one of height, pitch, speed"),
+    (lambda: Aim(CHEETAH, "altitude"), "world=HalfCheetah: .*altitude.* height, pitch, speed"),
     (lambda: Run(PUSHER), "world=SawyerPush: .*speed.* block, reach"),
     (lambda: Push(CHEETAH), "world=HalfCheetah: .*block.* height, pitch, speed"),
     (lambda: Episode(CHEETAH, reward=NOTHING), "object has no reward_of"),
     (limit(), "most=null: "),
-    (limit(quantity="wind", most=1.0), "quantity=wind: choose one of spin, velocity, motion"),
+    (limit(quantity="wind", most=1.0), "world=Quad.*: has no wind, only spin, velocity, motion"),
     (limit(most=(1.0, 2.0)), r"most=\[1.0, 2.0\]: .*velocity.* 3 "),
     (limit(least=(1.0, 2.0, 3.0), norm=True), "least=.*norm.*velocity.* 1 "),
     # what only the sizes of a task, or the parameters of a run, can show

@@ -15,7 +15,7 @@ import multiprocessing
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import cache, cached_property
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, NamedTuple
 
 import gymnasium
 import numpy as np
@@ -29,7 +29,7 @@ from hybrid_rl.envs.trial import check
 from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame
 from hybrid_rl.fields import Positive, part
 from hybrid_rl.protocols.contract import of_user, words
-from hybrid_rl.types import EnvState, Spec
+from hybrid_rl.types import Spec
 
 Numbers = np.ndarray | Array
 FLAGS = ("is_success", "success")  # in infos: what others call a success
@@ -93,13 +93,6 @@ class External(Made):
     def flat(self, obs: Any) -> np.ndarray:
         """What a policy sees, [o], of an observation as the environment returns it."""
         return np.asarray(flatten(self.known.seen, obs))
-
-    def step(self, state: EnvState, action: Array) -> NoReturn:
-        """No JAX function."""
-        raise UsageError(
-            f"{self.name}: steps on the host, so no method can plan on it; choose one that learns "
-            "its model, such as algo=hybrid_stochastic, nn_mppi or sac"
-        )
 
     def one(self, render_mode: str | None = None) -> gymnasium.Env:
         """A copy of the environment, with flat observations and without a time limit of its own."""
@@ -268,18 +261,20 @@ class Known(NamedTuple):
 @cache
 def _known(env: External) -> Known:
     """What one copy declares."""
+    one = None
     try:
         one = env.one()
-        if fault := _fault(one):
-            raise UsageError(f"{env.name}: {fault}")
+        fault, dt = _fault(one), env.dt or _time_step(one)  # some declare it in a reset
+        fault = fault or ("" if dt else f"does not say its time step; {DT}")
     except UsageError:
         raise
     except FAULTS as error:
-        key = "make" if env.make else "id"
-        raise UsageError(f"env.{key}={env.name}: {blame(error)}") from error
+        dt, fault = 0.0, blame(error)
+    if fault:
+        raise UsageError(f"env.{'make' if env.make else 'id'}={env.name}: {fault}")
+    assert one is not None
     space, obs, seen = one.action_space, one.observation_space, one.env.observation_space
     assert isinstance(space, Box)
-    dt = env.dt or _time_step(env.name, one)
     limit = None
     if not env.make and one.spec is not None:
         limit = gymnasium.spec(one.spec.id).max_episode_steps  # of the newest version of an env.id
@@ -306,13 +301,13 @@ def _fault(one: gymnasium.Env) -> str:
     return ""
 
 
-def _time_step(name: str, one: gymnasium.Env) -> float:
-    """The seconds between decisions, by `dt` of the environment or its `render_fps`."""
+def _time_step(one: gymnasium.Env) -> float:
+    """The seconds between decisions, by `dt` of the environment or its `render_fps`; 0: neither."""
     with suppress(*FAULTS):  # there is neither, or it is no number
         dt = float(getattr(one.unwrapped, "dt", None) or 1 / one.metadata["render_fps"])
         if 0 < dt < np.inf:
             return dt
-    raise UsageError(f"{name}: does not say its time step; {DT}")
+    return 0.0
 
 
 def check_world(env: Any) -> None:

@@ -19,7 +19,7 @@ Source: Gymnasium's documentation, "Env", "VectorEnv".
 """
 
 from collections.abc import Callable, Sequence
-from functools import cache, partial
+from functools import cache
 from typing import Any, ClassVar
 
 import gymnasium
@@ -205,8 +205,28 @@ class GymnasiumVectorEnv(VectorEnv):
 
 @cache
 def _vector_programs(env: Env, steps: int) -> tuple[Callable, Callable]:
-    """Reset and step for all equal `env`."""
-    return jax.jit(jax.vmap(env.reset)), jax.jit(partial(_autoreset_step, env, steps))
+    """Reset and step for all equal `env`.
+
+    A step gives (states, keys, counts) after resets, the states before them, and truncated [E].
+    """
+
+    def step(carry: tuple[EnvState, Array, Array], actions: Array) -> tuple[Any, EnvState, Array]:
+        state, keys, count = carry
+        last = jax.vmap(env.step)(state, actions)
+        count = count + 1
+        late = count >= steps if steps > 0 else jnp.zeros_like(last.terminated)
+        truncated = late & ~last.terminated
+        done = last.terminated | truncated
+        split = jax.vmap(jax.random.split)(keys)
+
+        def auto_reset() -> EnvState:
+            return where(done, jax.vmap(env.reset)(split[:, 0]), last)
+
+        state = jax.lax.cond(done.any(), auto_reset, lambda: last)
+        keys = jnp.where(done, split[:, 1], keys)
+        return (state, keys, jnp.where(done, 0, count)), last, truncated
+
+    return jax.jit(jax.vmap(env.reset)), jax.jit(step)
 
 
 def _infos(state: EnvState, known: np.ndarray) -> Info:
@@ -215,25 +235,3 @@ def _infos(state: EnvState, known: np.ndarray) -> Info:
     if FLAG in infos:
         infos[FLAG] = infos[FLAG].astype(bool)
     return infos | {f"_{name}": known for name in infos}
-
-
-def _autoreset_step(
-    env: Env, steps: int, carry: tuple[EnvState, Array, Array], actions: Array
-) -> tuple[tuple[EnvState, Array, Array], EnvState, Array]:
-    """(states, keys, counts) after resets; the states before them; truncated [E]."""
-    state, keys, count = carry
-    last = jax.vmap(env.step)(state, actions)
-    count = count + 1
-    truncated = (
-        (count >= steps) & ~last.terminated if steps > 0 else jnp.zeros_like(last.terminated)
-    )
-    done = last.terminated | truncated
-
-    def auto_reset() -> EnvState:
-        first = jax.vmap(env.reset)(split[:, 0])
-        return where(done, first, last)
-
-    split = jax.vmap(jax.random.split)(keys)
-    state = jax.lax.cond(done.any(), auto_reset, lambda: last)
-    keys = jnp.where(done, split[:, 1], keys)
-    return (state, keys, jnp.where(done, 0, count)), last, truncated

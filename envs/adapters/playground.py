@@ -45,7 +45,7 @@ class Playground:
     def reset(self, key: Array) -> EnvState:
         """The first state of an episode."""
         state = _loaded(self).reset(jax.random.key_data(key))
-        return EnvState(*self._parts(state), terminated=_done(state))
+        return EnvState(*self._parts(state), terminated=state.done > 0)
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state after action [m]."""
@@ -60,17 +60,13 @@ class Playground:
             data=data,
             obs=jnp.where(sound, obs, state.obs),
             reward=jnp.where(sound, reward, 0.0),
-            terminated=_done(after) | ~sound,
+            terminated=(after.done > 0) | ~sound,
         )
 
     def _parts(self, state: Any) -> tuple[Any, Array, Array]:
         """Data, observation [o] and reward [] of Playground's state."""
         obs = state.obs["state"] if isinstance(state.obs, Mapping) else state.obs
         return state, obs.ravel().astype(jnp.float32), state.reward.astype(jnp.float32)
-
-
-def _done(state: Any) -> Array:
-    return state.done > 0
 
 
 @cache

@@ -17,14 +17,15 @@ A process of its own calls these methods, one at a time, but for `stop`, which i
 a second thread when another method does not return.
 """
 
+import math
 from functools import cached_property
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from hybrid_rl.envs.adapters.unstepped import Made, Unstepped, import_named
 from hybrid_rl.errors import FAULTS, UsageError, blame
-from hybrid_rl.fields import Count, NotNegative, Positive, part
+from hybrid_rl.fields import Count, FieldError, Must, NotNegative, Positive, check_span, part
 from hybrid_rl.types import Spec
 
 PENDING = 8  # actions at most that are sent and have not acted yet
@@ -45,6 +46,22 @@ class Outside(Unstepped):
 
 
 @part
+class Form:
+    """The fields of the class of a robot."""
+
+    obs: Count
+    dt: Annotated[float, Must(lambda x: 0 < x < math.inf, "be above 0 and finite")]  # [s]
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+    safe: tuple[float, ...] | Annotated[float, Must(math.isfinite, "be finite")] | None
+
+    def __post_init__(self) -> None:
+        check_span(self)
+        if isinstance(self.safe, tuple) and len(self.safe) != len(self.low):
+            raise FieldError(self, "safe", "must be one number, or as many as low")
+
+
+@part
 class Robot(Made):
     """A robot that learns while it moves. Its sizes are read from its class, without making one."""
 
@@ -57,59 +74,41 @@ class Robot(Made):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        _ = self.spec, self.safe
+        _ = self.form
 
     @cached_property
     def kind(self) -> Any:
         """The user's class."""
-        if not self.make:
-            raise UsageError("env.make: give MODULE:CLASS of your robot")
-        kind = import_named(self.make)
-        needed = "reset", "observe", "apply", "reward", "stop", "dt", "low", "high", "obs"
-        if missing := {*needed} - {*dir(kind)}:
+        return import_named(self.make)
+
+    @cached_property
+    def form(self) -> Form:
+        """What its class says."""
+        needed = {"reset", "observe", "apply", "reward", "stop", *Form.__match_args__} - {"safe"}
+        if missing := needed - {*dir(self.kind)}:
             raise UsageError(f"env.make={self.name}: lacks {', '.join(sorted(missing))}")
-        return kind
+        try:
+            given: Any = (getattr(self.kind, name, None) for name in Form.__match_args__)
+            return Form(*given)
+        except FieldError as error:
+            raise UsageError(f"env.make={self.name}: {error.line}") from error
 
     @property
     def spec(self) -> Spec:
         """Its sizes, and the time between decisions."""
-        low, high = self.bounds
-        if low.shape != high.shape or not (low.size and (low < high).all()):
-            raise UsageError(f"env.make={self.name}: low and high must be lists with low < high")
-        dt, obs = (float(self._numbers(name, 0)) for name in ("dt", "obs"))
-        if not (dt > 0 and obs > 0 and obs.is_integer()):
-            line = "dt and obs must be above 0, and obs a whole number"
-            raise UsageError(f"env.make={self.name}: {line}")
-        return Spec(int(obs), len(low), dt)
+        return Spec(int(self.form.obs), len(self.form.low), float(self.form.dt))
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """The least and the greatest action [m], in the robot's units."""
-        low, high = (self._numbers(name, 1).astype(np.float32) for name in ("low", "high"))
-        return low, high
+        return np.array(self.form.low, np.float32), np.array(self.form.high, np.float32)
 
     @property
     def safe(self) -> np.ndarray:
         """The safe action [m], from -1 to 1."""
         low, high = self.bounds
-        middle = (low + high) / 2
-        given = getattr(self.kind, "safe", None)
-        given = middle if given is None else self._numbers("safe", np.ndim(given))
-        if given.shape not in ((), low.shape):
-            raise UsageError(f"env.make={self.name}: safe must be one number, or as many as low")
+        given = (low + high) / 2 if self.form.safe is None else np.array(self.form.safe)
         return np.clip(2 * (given - low) / (high - low) - 1, -1, 1).astype(np.float32)
-
-    def _numbers(self, name: str, axes: int) -> np.ndarray:
-        """A field of the class as finite numbers with `axes` axes; UsageError for others."""
-        value = getattr(self.kind, name)
-        try:
-            numbers = np.asarray(value, float)
-        except (TypeError, ValueError):  # words, a property
-            numbers = np.full(1, np.nan)
-        if not np.isfinite(numbers).all() or numbers.ndim != axes:
-            must = "finite numbers" if axes else "one finite number"
-            raise UsageError(f"env.make={self.name}: {name}={value}: must be {must}")
-        return numbers
 
     def made(self) -> Any:
         """The robot."""

@@ -3,7 +3,7 @@
     python -m hybrid_rl.stand_in robot=halfcheetah port=7000
     python -m hybrid_rl.train task=robot env.make=hybrid_rl.envs.adapters.stand_in:HalfCheetah
 
-`HalfCheetah`, `Cartpole` and `FastCartpole` are drivers as a user writes them for a robot.
+`HalfCheetah` and `Cartpole` are drivers as a user writes them for a robot.
 """
 
 import socket
@@ -107,9 +107,3 @@ class Cartpole(StandIn):
     def terminated(self, obs: np.ndarray) -> bool:
         """Whether the pole has fallen, or the cart has come near the end of its rail."""
         return bool(abs(obs[1]) > 0.2 or abs(obs[0]) > 0.95)
-
-
-class FastCartpole(Cartpole):
-    """The cartpole with 100 decisions a second."""
-
-    dt = 0.01

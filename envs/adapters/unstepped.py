@@ -26,7 +26,8 @@ class Unstepped:
 
     def step(self, state: EnvState, action: Array) -> NoReturn:
         """No JAX function."""
-        raise UsageError(f"{type(self).__name__}: {ALONE}")
+        line = "steps outside JAX, so no method can plan on it; choose one that learns its model"
+        raise UsageError(f"{type(self).__name__}: {line}, such as algo=nn_mppi or sac")
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,7 @@ from jax import Array
 from hybrid_rl.core.poses import rotated, to_map
 from hybrid_rl.envs.analytic.point_mass import DT, move
 from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.fields import Discount, FieldError, NotNegative, Positive, part
+from hybrid_rl.fields import Discount, NotNegative, Positive, check_span, part
 from hybrid_rl.types import EnvState, Spec
 
 Shape = tuple[float, ...]  # x, y, angle, half width, half height, rounding [m, rad]
@@ -73,8 +73,7 @@ class ContactPlane:
     spec = Spec(obs=4, act=2, dt=DT)
 
     def __post_init__(self) -> None:
-        if not _below(self.low, self.high):
-            raise FieldError(self, "low", "needs two numbers below high")
+        check_span(self)
         for shape in self.objects:
             _check(shape, self.low, self.high)
 
@@ -109,8 +108,11 @@ class ContactPlane:
             x, touched = carry
             x = move(x, self.acceleration * u, self.drag, DT / SUBSTEPS)
             for _corner in range(CORNER):
-                x, touches = self._pushed_out(x, pose)
-                touched = touched | touches
+                d, normal = jax.value_and_grad(self.distance)(x[:2], pose)
+                p = x[:2] + (self.radius - d) * normal  # outside of the objects, without
+                v = x[2:] - jnp.minimum(x[2:] @ normal, 0) * normal  # velocity into them
+                x = jnp.where(d < self.radius, jnp.concatenate([p, v]), x)
+                touched = touched | (d < self.radius)
             return (x, touched), None
 
         first = body.x, jnp.zeros((), bool)
@@ -126,14 +128,6 @@ class ContactPlane:
         false = self.false_contact * jnp.linalg.norm(change) / 2
         wrong = jax.random.uniform(key) < jnp.where(touch > 0, self.missed, false)
         return jnp.where(wrong, 1 - touch, touch)
-
-    def _pushed_out(self, x: Array, pose: Array) -> tuple[Array, Array]:
-        """x [4] outside of the objects, without velocity into them; whether it was in contact."""
-        d, normal = jax.value_and_grad(self.distance)(x[:2], pose)
-        touches = d < self.radius
-        p = x[:2] + (self.radius - d) * normal
-        v = x[2:] - jnp.minimum(x[2:] @ normal, 0) * normal
-        return jnp.where(touches, jnp.concatenate([p, v]), x), touches
 
     def _state(self, body: Body, touch: Array, measured: Array) -> EnvState:
         return EnvState(body, body.x, measured, metrics=metrics_of(touch, body.pose))
@@ -178,15 +172,10 @@ def rounded_box(
     return outside + jnp.minimum(jnp.max(q), 0) - rounding
 
 
-def _below(a: tuple[float, ...], b: tuple[float, ...]) -> bool:
-    """Whether every number of a is below that of b."""
-    return all(x < y for x, y in zip(a, b, strict=True))
-
-
 def _check(shape: tuple[float, ...], low: tuple[float, ...], high: tuple[float, ...]) -> None:
     """Raise ValueError unless `shape` is a rounded box whose middle lies between low and high."""
     sound = len(shape) == 6 and 0 < shape[5] <= min(shape[3:5])
-    if not (sound and _below(low, shape[:2]) and _below(shape[:2], high)):
+    if not (sound and all(a < s < b for a, s, b in zip(low, shape, high, strict=False))):
         raise ValueError(
             f"objects={list(shape)}: each is x, y, in the box, angle, half width, half height, and "
             "a rounding above 0 that is at most the smaller half"

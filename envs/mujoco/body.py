@@ -11,6 +11,7 @@ same one; other values are part of its name (`mjcf`), so they hold in MuJoCo C, 
 
 from abc import ABC, abstractmethod
 from dataclasses import KW_ONLY
+from typing import ClassVar
 
 from jax import Array
 
@@ -30,6 +31,7 @@ class Body(ABC):
     friction: Positive = 1.0  # factor on every coefficient of sliding friction
     motors: tuple[Positive, ...] | Positive = 1.0  # factor on their strength: of all, or [m]
     payload: NotNegative = 0.0  # [kg] at the centre of mass of the root
+    _asset: ClassVar[str] = ""  # the model, whose first m actuators are the motors, for `_body`
 
     def __post_init__(self) -> None:
         size = self.spec.act
@@ -44,11 +46,6 @@ class Body(ABC):
     def pose(self, state: EnvState) -> Array:
         """Joint positions qpos [nq] for rendering."""
         return state.data.qpos
-
-    @property
-    def _asset(self) -> str:
-        """The model, whose first m actuators are the motors; for a body without its own `_body`."""
-        return ""
 
     @property
     def _body(self) -> Physics:

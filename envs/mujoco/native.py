@@ -15,6 +15,7 @@ Source: MuJoCo's documentation, "Simulation" and `mujoco.batch`.
 import os
 import re
 import sys
+from collections import defaultdict
 from collections.abc import Callable
 from functools import cache, partial
 from math import isfinite, prod
@@ -65,10 +66,8 @@ def _warn(text: str) -> None:
         print(line, file=sys.stderr, flush=True)
 
 
-@cache
-def _idle(asset: str, worlds: int, threads: int, reads: Names, fields: Names) -> list[_Pool]:
-    """Pools that are not in use; calls of several devices at the same time need one each."""
-    return []
+# Pools that are not in use, by what they step; calls of several devices need one each.
+_IDLE: defaultdict[tuple, list[_Pool]] = defaultdict(list)
 
 
 def _pool(asset: str, worlds: int, threads: int, reads: Names, fields: Names) -> _Pool:
@@ -113,7 +112,7 @@ def _advance(
 
     A half-cheetah steps in 5 us, so what is the same at every call is prepared in `_pool`.
     """
-    idle = _idle(asset, len(x), threads, reads, fields)
+    idle = _IDLE[asset, len(x), threads, reads, fields]
     try:
         pool = idle.pop()
     except IndexError:

@@ -40,20 +40,15 @@ ELEMENTS = {  # ELEMENT.FIELD -> fields of MjModel that get the value, or are mu
 class Ranges:
     """[low, high] of each number; None: as it is in the model."""
 
-    mass: tuple[Positive, ...] | None = None
-    friction: tuple[Positive, ...] | None = None
-    damping: tuple[NotNegative, ...] | None = None
-    motors: tuple[Positive, ...] | None = None
-    payload: tuple[NotNegative, ...] | None = None  # [kg]
+    mass: tuple[Positive, Positive] | None = None
+    friction: tuple[Positive, Positive] | None = None
+    damping: tuple[NotNegative, NotNegative] | None = None
+    motors: tuple[Positive, Positive] | None = None
+    payload: tuple[NotNegative, NotNegative] | None = None  # [kg]
     elements: Mapping[str, Any] | str | None = None  # by name, or a YAML file of them
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "elements", _listed(self) or None)
-        for name in FACTORS:
-            pair = getattr(self, name)
-            right = isinstance(pair, tuple) and len(pair) == 2 and pair[0] <= pair[1]
-            if pair is not None and not right:
-                raise FieldError(self, name, "must be [low, high], or null")
 
     def draw(self, state: PhysicsState, motors: int, key: Array) -> PhysicsState:
         """`state` with another body, whose first actuators are the `motors`. Consumes the key."""
@@ -64,7 +59,7 @@ class Ranges:
             return own.get(name, jnp.asarray(getattr(model, name), jnp.float32))
 
         def draw(i: int, pair: tuple[float, ...], shape: tuple[int, ...] = ()) -> Array:
-            return jax.random.uniform(keys[i], shape, jnp.float32, *pair)
+            return jax.random.uniform(keys[i], shape, jnp.float32, *sorted(pair))
 
         if self.mass is not None:
             factor = draw(0, self.mass)

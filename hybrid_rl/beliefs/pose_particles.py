@@ -267,20 +267,16 @@ class PoseParticles:
         """Resampled and moved particles; the same ones where none is due. The key is consumed."""
         before = Cloud(state.theta, state.log_w, state.log_like)
         evidence = Evidence(state.s, state.y, state.count, state.touched, self._chance, self.trust)
-        cloud, accepted = self._rejuvenate(self._frame, evidence, before, key)
-        renewed = state._replace(**cloud._asdict(), accepted=accepted)
-        due = self._due(state)
-        return jax.tree.map(lambda new, old: jnp.where(due, new, old), renewed, state)
-
-    @property
-    def _rejuvenate(self) -> Renewal:
-        """What `kind` does with particles."""
-        return {
+        renewal: dict[str, Renewal] = {
             "metropolis": markov(poses.CHANCES, self.moves),
             "local": markov(poses.NO_LEAPS, self.moves),
             "manifold": manifold,
             "jitter": jitter,
-        }[self.kind]
+        }
+        cloud, accepted = renewal[self.kind](self._frame, evidence, before, key)
+        renewed = state._replace(**cloud._asdict(), accepted=accepted)
+        due = self._due(state)
+        return jax.tree.map(lambda new, old: jnp.where(due, new, old), renewed, state)
 
     def predict(self, state: Particles, s: Array) -> tuple[Array, Array]:
         """p(y = 1) and the standard deviation [] of y at s [2]."""

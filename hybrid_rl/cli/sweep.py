@@ -20,7 +20,6 @@ from typing import Any
 from hydra._internal.core_plugins.basic_sweeper import BasicSweeper
 from hydra.core.hydra_config import HydraConfig
 from hydra.core.override_parser.overrides_parser import OverridesParser
-from hydra.core.override_parser.types import Override
 from hydra.core.plugins import Plugins
 from hydra.core.singleton import Singleton
 from omegaconf import DictConfig, OmegaConf
@@ -44,14 +43,6 @@ Result = dict[str, Any]  # of a job: code, line
 POLL = 0.5  # [s] between two checks of the jobs
 PATIENCE = 60.0  # [s] for the jobs to end, once the sweep is interrupted
 ACCELERATED = ("auto", "mjx", "warp")  # physics that may need a GPU to build a world
-
-
-def jobs_of(parsed: Sequence[Override]) -> list[list[str]]:
-    """The overrides of each job: every combination of the values."""
-    for each in (each for each in parsed if each.is_sweep_override()):
-        if each.is_interval_sweep() or not [*each.sweep_string_iterator()]:
-            raise UsageError(f"{each.input_line}: gives no values; list them")
-    return BasicSweeper.split_arguments([*parsed], None)[0]
 
 
 class Task:
@@ -109,7 +100,11 @@ class Sweeper:
             raise UsageError(f"hydra/launcher={launcher}: {line}")
         parser = OverridesParser.create(config_loader=self.hydra_context.config_loader)
         given = [*(f"{k}={v}" for k, v in self.params.items()), *typed(arguments)]
-        jobs = jobs_of(parser.parse_overrides(given))
+        parsed = parser.parse_overrides(given)
+        for each in (each for each in parsed if each.is_sweep_override()):
+            if each.is_interval_sweep() or not [*each.sweep_string_iterator()]:
+                raise UsageError(f"{each.input_line}: gives no values; list them")
+        jobs = BasicSweeper.split_arguments([*parsed], None)[0]
         configs = self._checked(jobs)
         folder = Path(str(self.config.hydra.sweep.dir))
         folder.mkdir(parents=True, exist_ok=True)
@@ -278,15 +273,11 @@ def _wait(jobs: dict[int, Any], results: dict[int, Result], most: float = math.i
     while len(results.keys() & jobs.keys()) < len(jobs) and time.monotonic() - began < most:
         for number, job in jobs.items():
             if number not in results and job.done():
-                results[number] = _result(job)
+                try:
+                    results[number] = job.results()[0].return_value
+                except Exception as error:
+                    line = f"lost: {str(error).strip().splitlines()[0]}"
+                    line += f"; see {relative(job.paths.stderr)}"
+                    results[number] = {"code": 1, "line": line}
                 print(f"job {number} ends: {results[number]['line']}", flush=True)
         time.sleep(POLL)
-
-
-def _result(job: Any) -> Result:
-    """The result of a job of Submitit's that has ended."""
-    try:
-        return job.results()[0].return_value
-    except Exception as error:
-        line = str(error).strip().splitlines()[0]
-        return {"code": 1, "line": f"lost: {line}; see {relative(job.paths.stderr)}"}

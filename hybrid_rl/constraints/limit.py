@@ -8,6 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from hybrid_rl.core.returns import quantities
 from hybrid_rl.fields import FieldError, Inside, NotNegative, Positive, part
 from hybrid_rl.protocols import Measured
 
@@ -28,10 +29,8 @@ class Limit:
     chance: Inside | None = None  # a planner's largest probability of a violation; None: any
 
     def __post_init__(self) -> None:
-        known = self.world.quantities(jnp.zeros(self.world.spec.obs))
-        if self.quantity not in known:
-            raise FieldError(self, "quantity", f"choose one of {', '.join(known)}")
-        size = 1 if self.norm else known[self.quantity].size
+        quantity = quantities(self, self.quantity)[self.quantity]
+        size = 1 if self.norm else quantity.size
         for name in ("most", "least"):
             given = getattr(self, name)
             if isinstance(given, tuple) and len(given) not in (1, size):

@@ -56,7 +56,10 @@ class NoisyController:
         u, inner, metrics = self.controller.act(params, state.inner, obs, acting)
         e = self._noise(state, drawing)
         after = NoisyState(e, state.count + 1, state.dt, inner)
-        return jnp.clip(u + self._share(params) * e, -1, 1), after, metrics
+        k, share = params.decisions, decay.of_run(self.decay, params.decisions)
+        if self.until is not None:
+            share = 0.0 if k is None else share * jnp.maximum(1 - k / self.until, 0)
+        return jnp.clip(u + share * e, -1, 1), after, metrics
 
     def _noise(self, state: NoisyState, key: Array) -> Array:
         """The noise e [m] of this decision. The key is consumed."""
@@ -68,13 +71,6 @@ class NoisyController:
         if self.kind == "held":
             return jnp.where(state.count % self.hold == 0, e, state.e)
         return e
-
-    def _share(self, params: Params) -> Any:
-        """The factor [] on the noise at this decision of the run."""
-        k, share = params.decisions, decay.of_run(self.decay, params.decisions)
-        if self.until is None:
-            return share
-        return 0.0 if k is None else share * jnp.maximum(1 - k / self.until, 0)
 
     def greedy(self) -> Controller:
         """The inner controller without exploration."""

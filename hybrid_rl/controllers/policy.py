@@ -34,13 +34,11 @@ class PolicyController:
     explore: bool = True
     hold: Count = 1  # [decisions] longest that noise is held
 
-    @property
-    def _holds(self) -> bool:
-        return self.explore and self.hold > 1
-
     def init(self, spec: Spec) -> tuple:
         """No noise; without `hold`, no state."""
-        return Held(jnp.zeros(spec.act), jnp.zeros((), jnp.int32)) if self._holds else ()
+        if not self.explore or self.hold == 1:
+            return ()
+        return Held(jnp.zeros(spec.act), jnp.zeros((), jnp.int32))
 
     def act(
         self, params: Params, state: tuple, obs: Array, key: Array
@@ -50,7 +48,7 @@ class PolicyController:
         mean = self.policy.mean(params.policy, x)
         if not self.explore:
             return mean, state, {}
-        if self._holds:
+        if self.hold > 1:
             state = self._next(state, key)
             return self.policy.sample(params.policy, x, state.noise)[0], state, {}
         noise = jax.random.normal(key, mean.shape)

@@ -56,7 +56,10 @@ class RefitsController:
         preparing, rolling, drawing = jax.random.split(key, 3)
         x = lifting.start(self.model, params, obs)
         value, memory = self.objective.prepare(params, state.memory, x, state.u, preparing)
-        own = self._proposed(params, state, x, rolling)
+        own = jnp.zeros((0, *state.plan.shape))
+        if (drawn := self._own) is not None:
+            step = partial(self.model.step, params.model)
+            own = drawn.imagine(params, step, state.more, x, state.plan, rolling).path.u
         price, follow = self.disagreement_price, lambda x, u: u
         score = jax.vmap(lambda v: priced(self.model, params.model, value, price, follow, x, v))
 
@@ -86,10 +89,3 @@ class RefitsController:
         """The candidates from the proposal; None: there are none."""
         count = round(self.share * self.samples)
         return Candidates(self.proposal, count) if self.proposal is not None and count else None
-
-    def _proposed(self, params: Params, state: Kept, x: Array, key: Array) -> Array:
-        """Plans [share K, T, m] of the proposal from x [n]. The key is consumed."""
-        if (own := self._own) is None:
-            return jnp.zeros((0, *state.plan.shape))
-        step = partial(self.model.step, params.model)
-        return own.imagine(params, step, state.more, x, state.plan, key).path.u

@@ -54,12 +54,8 @@ class SamplingController:
     def init(self, spec: Spec) -> Kept:
         """The plan of `rest`, and the initial carries and memory."""
         plan = jnp.full((self.horizon, spec.act), self.rest)
-        memory, carries = self.objective.init(spec), self._candidates.begin(spec)
-        return Kept(plan, jnp.zeros(spec.act), memory, carries)
-
-    @property
-    def _candidates(self) -> Candidates:
-        return Candidates(self.proposal, self.samples)
+        carries = Candidates(self.proposal, self.samples).begin(spec)
+        return Kept(plan, jnp.zeros(spec.act), self.objective.init(spec), carries)
 
     def act(
         self, params: Params, state: Kept, obs: Array, key: Array
@@ -75,7 +71,8 @@ class SamplingController:
         x = lifting.start(self.model, params, obs)
         to_go, memory, rolling = self._to_go(params, state, x, rolling)
         step = partial(self.model.step, params.model)
-        samples = self._candidates.imagine(params, step, state.more, x, state.plan, rolling)
+        drawn = Candidates(self.proposal, self.samples)
+        samples = drawn.imagine(params, step, state.more, x, state.plan, rolling)
         returns = jax.vmap(to_go)(samples.path)
         w = sampling.weights(
             returns[:, :-1],
@@ -89,8 +86,8 @@ class SamplingController:
             plan = jnp.where(jnp.isfinite(S.max()), samples.path.u[jnp.argmax(S)], jnp.nan)
         action = plan[0]
         if self.execute == "sample":
-            drawn = samples.path.u[jax.random.categorical(choosing, jnp.log(w[:, 0])), 0]
-            action = jnp.where(jnp.isnan(action), action, drawn)
+            one = samples.path.u[jax.random.categorical(choosing, jnp.log(w[:, 0])), 0]
+            action = jnp.where(jnp.isnan(action), action, one)
         metrics = {
             "planner/effective_samples": sampling.effective_samples(w)[0],
             "planner/planned_return": w[:, 0] @ sampling.kept(w, returns[:, :-1])[:, 0],

@@ -49,37 +49,24 @@ class StagesController:
     ) -> tuple[Array, StagesState, dict[str, Array]]:
         """Action [m], next state, metrics. The key is consumed."""
 
-        def branch_of(name: str) -> Any:
+        def branch_of(name: str, missing: Mapping[str, Array]) -> Any:
             def act(each: dict[str, Any]) -> tuple[Array, dict[str, Any], dict[str, Array]]:
                 u, after, metrics = self.stages[name].act(params, each[name], obs, key)
-                return u, {**each, name: after}, metrics
+                return u, {**each, name: after}, {**missing, **metrics}
 
             return act
 
         names, decisions = self._acting
-        branches = [branch_of(name) for name in names]
         shapes: dict[str, Any] = {}
-        for branch in branches:
-            shapes |= jax.eval_shape(branch, state.each)[2]
+        for name in names:
+            shapes |= jax.eval_shape(branch_of(name, {}), state.each)[2]
         nothing = {name: jnp.full(m.shape, jnp.nan, m.dtype) for name, m in shapes.items()}
-
-        def filled(branch: Any) -> Any:
-            def act(each: dict[str, Any]) -> tuple[Array, dict[str, Any], dict[str, Array]]:
-                u, each, metrics = branch(each)
-                return u, each, {**nothing, **metrics}
-
-            return act
-
+        branches = [branch_of(name, nothing) for name in names]
         ends = jnp.cumsum(jnp.array(decisions, jnp.int32))
-        stage = jnp.sum(self._count(params, state) >= ends)
-        u, each, metrics = jax.lax.switch(stage, [filled(b) for b in branches], state.each)
+        count = params.decisions if self.of_run else state.count
+        stage = jnp.sum((jnp.inf if count is None else count) >= ends)
+        u, each, metrics = jax.lax.switch(stage, branches, state.each)
         return u, StagesState(each, state.count + 1), metrics
-
-    def _count(self, params: Params, state: StagesState) -> Array | float:
-        """Decisions [] of the episode or of the run so far."""
-        if not self.of_run:
-            return state.count
-        return jnp.inf if params.decisions is None else params.decisions
 
     def greedy(self) -> "StagesController":
         """The same stages without exploration."""

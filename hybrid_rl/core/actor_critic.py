@@ -66,6 +66,8 @@ class ActorCritic:
 
     data: ClassVar[str] = "uniform"
     owns: ClassVar[tuple[str, ...]] = ("policy", "critic")
+    batches: ClassVar[int] = 1
+    during_random: ClassVar[bool] = False  # whether it also learns while decisions are random
 
     def begun(
         self,
@@ -145,10 +147,6 @@ class ActorCritic:
         policy, optimiser = adam_step(rate, grads, state.policy_optimiser, state.policy)
         return state.replace(policy=policy, policy_optimiser=optimiser), (value, more, norm)
 
-    def followed(self, old: Any, new: Any) -> Any:
-        """The parameters of a target after it has followed those of `new`."""
-        return statistics.soft_target_update(old, new, self.tau)
-
 
 @part
 class SoftActorCritic(ActorCritic):
@@ -162,8 +160,6 @@ class SoftActorCritic(ActorCritic):
     target_entropy: float | None = None  # [nat]; None: -m
     during_random: bool = False  # whether it also learns while decisions are random
     max_grad_norm: Positive | None = None  # of the policy's gradient; None: no limit
-
-    batches: ClassVar[int] = 1
 
     def recorded(self, state: ActorCriticState, batch: Batch, noise: Array) -> Imagined:
         """The decisions of `batch`, each followed by one of the policy, for noise [B, m]."""
@@ -218,7 +214,7 @@ class SoftActorCritic(ActorCritic):
         rate = self.factor(params) * self.alpha_learning_rate
         grad, optimiser = along.entropy - aim, state.alpha_optimiser
         log_alpha, optimiser = adam_step(rate, grad, optimiser, state.log_alpha)
-        target = self.followed(state.target, state.critic)
+        target = statistics.soft_target_update(state.target, state.critic, self.tau)
         metrics = {
             "sac/policy_loss": along.loss,
             "sac/entropy": along.entropy,

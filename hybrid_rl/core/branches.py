@@ -53,7 +53,7 @@ def transitions(params: Params, policy: Policy, draw: Draw, reward: Reward) -> T
 
 
 def begin(size: int, memory: int, n: int, m: int, steps: int, whole: bool = True) -> Branches:
-    """`size` branches that are to start at the next update; memory: transitions, a multiple.
+    """`size` branches that are to start at the next update; memory: transitions.
 
     whole: false keeps the states and rewards of transitions alone.
     """

@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.fields import FieldError, part
+from hybrid_rl.fields import FieldError, check_span, part
 
 
 @part
@@ -25,10 +25,9 @@ class Box:
     lattice: bool = False  # points that `sample` draws; false: independent
 
     def __post_init__(self) -> None:
-        if not len(self.coordinates) == len(self.low) == len(self.high) or not self.coordinates:
-            raise ValueError("domain: coordinates, low and high must have one length, 1 or more")
-        if not all(a < b for a, b in zip(self.low, self.high, strict=True)):
-            raise FieldError(self, "low", f"must lie below high={list(self.high)}")
+        check_span(self)
+        if len(self.coordinates) != len(self.low):
+            raise FieldError(self, "coordinates", f"must be {len(self.low)}, as low and high")
 
     @property
     def size(self) -> int:

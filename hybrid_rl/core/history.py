@@ -29,8 +29,3 @@ def shifted(s: Array, u: Array, obs: Array, dt: Array | float) -> Array:
     """The next s [n] after action u [m] at s [n] led to obs [o] within dt [s]."""
     rate = (obs - s[: obs.size]) / dt
     return jnp.concatenate((obs, rate, u, s[obs.size :]))[: s.size]
-
-
-def onward(s: Array, size: int, dt: Array | float) -> Array:
-    """The next observation [size] if what moves at s [..., n] goes on: o + v dt."""
-    return s[..., :size] + dt * s[..., size : 2 * size]

@@ -13,11 +13,13 @@ with the target critic's Q, are model-based value expansion (Feinberg et al. 201
 """
 
 from abc import ABC, abstractmethod
+from typing import Any
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.fields import FieldError
 from hybrid_rl.protocols import Env
 from hybrid_rl.types import Imagined, Params, Path, Return, Reward, Spec
 
@@ -81,6 +83,14 @@ def reached(paths: Imagined) -> Array:
     """The probability [H, B] that a trajectory does not end before each decision."""
     before = jnp.concatenate([jnp.ones_like(paths.continues[:1]), paths.continues[:-1]])
     return jnp.cumprod(before, 0)
+
+
+def quantities(part: Any, *names: str) -> dict[str, Array]:
+    """Those of the `world` of a reward or a constraint; FieldError if it lacks one of the names."""
+    known = part.world.quantities(jnp.zeros(part.world.spec.obs))
+    if missing := [name for name in names if name not in known]:
+        raise FieldError(part, "world", f"has no {missing[0]}, only {', '.join(known)}")
+    return known
 
 
 def bonus(world: Env) -> float:

@@ -19,8 +19,8 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.fields import Count, Positive, Several, part
-from hybrid_rl.networks import Widths, normalised
-from hybrid_rl.networks.normalised import NormalisedNet
+from hybrid_rl.networks import normalised
+from hybrid_rl.networks.normalised import Blocks, NormalisedNet
 from hybrid_rl.types import Spec
 
 
@@ -28,13 +28,10 @@ from hybrid_rl.types import Spec
 class CategoricalQ:
     """`members` independent distributions over returns."""
 
-    hidden: Widths = (256, 256)  # the width, once for each residual block
+    hidden: Blocks = (256, 256)  # the width, once for each residual block
     members: Count = 2
     bins: Several = 101  # atoms
     bound: Positive = 5.0  # of scaled returns
-
-    def __post_init__(self) -> None:
-        normalised.check(self)
 
     @property
     def atoms(self) -> Array:

@@ -21,7 +21,6 @@ import sysconfig
 from collections.abc import Collection, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import is_dataclass
-from functools import cache
 from importlib import import_module, metadata
 from importlib.machinery import PathFinder
 from importlib.util import find_spec
@@ -32,6 +31,9 @@ from hybrid_rl.errors import FAULTS, GYMNASIUM, UsageError, printable, relative,
 from hybrid_rl.fields import FieldError, check_all
 
 PACKAGE = Path(__file__).parents[1]
+OF_PYTHON = [
+    Path(sysconfig.get_path(name)).resolve() for name in ("stdlib", "platstdlib", "scripts")
+]
 CHECKOUT = ("envs", "hydra_plugins", "scripts", "tests", "thesis")  # modules beside PACKAGE
 NONE = "is no part of hybrid_rl"
 OTHER = f"{NONE}; put its folder on PYTHONPATH if it is yours"
@@ -225,14 +227,7 @@ def _of_user(folder: Path) -> bool:
     if not any(folder == Path(entry or os.curdir).resolve() for entry in sys.path):
         return False
     installed = {"site-packages", "dist-packages"} & {*folder.parts}
-    return not installed and not any(own in (folder, *folder.parents) for own in _of_python())
-
-
-@cache
-def _of_python() -> tuple[Path, ...]:
-    """The folders of Python itself."""
-    names = ("stdlib", "platstdlib", "scripts")
-    return tuple(Path(sysconfig.get_path(name)).resolve() for name in names)
+    return not installed and not any(own in (folder, *folder.parents) for own in OF_PYTHON)
 
 
 def absent(name: str) -> bool:

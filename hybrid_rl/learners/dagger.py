@@ -172,13 +172,16 @@ class DAgger:
     def init(self, key: Array, spec: Spec) -> DAggerState:
         """An untrained clone without labels. The key is consumed."""
         rest = self._teacher.init(spec)
-        policy = self.policy.init(key, spec)
+        policy, evidence = self.policy.init(key, spec), getattr(self.target, "evidence", None)
+        if evidence is not None:  # zeros in the shape of what the target sums over the labels
+            shapes = jax.eval_shape(evidence, Params(policy=policy), jnp.zeros(spec.obs))
+            evidence = jax.tree.map(jnp.zeros_like, shapes)
         count, zero = self.most or self.capacity // self.length, jnp.zeros((), jnp.int32)
         return DAggerState(
             policy,
             optax.adam(self.learning_rate).init(policy),
             empty(self.capacity, spec.obs, spec.act),
-            self._no_evidence(policy, spec),
+            evidence,
             statistics.init(spec.obs),
             rest,
             jnp.zeros(count),
@@ -187,14 +190,6 @@ class DAgger:
             zero,
             jnp.zeros(()),
         )
-
-    def _no_evidence(self, policy: Any, spec: Spec) -> Any:
-        """Zeros in the shape of what the target sums over the labels."""
-        evidence = getattr(self.target, "evidence", None)
-        if evidence is None:
-            return None
-        shapes = jax.eval_shape(evidence, Params(policy=policy), jnp.zeros(spec.obs))
-        return jax.tree.map(jnp.zeros_like, shapes)
 
     def params(self, state: DAggerState) -> dict[str, Any]:
         """The policy, and what targets consult about the labels."""

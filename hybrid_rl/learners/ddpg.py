@@ -9,12 +9,13 @@ the original has one. A time limit does not terminate the task.
 """
 
 from dataclasses import KW_ONLY
-from typing import Any, ClassVar
+from typing import Any
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.core import statistics
 from hybrid_rl.core.actor_critic import ActorCritic, ActorCriticState
 from hybrid_rl.fields import Count, Positive, Share, part
 from hybrid_rl.types import Batch, Params, Spec
@@ -29,9 +30,6 @@ class DDPG(ActorCritic):
     critic_learning_rate: Positive = 1e-3
     tau: Share = 0.01
     batch_size: Count = 128
-
-    batches: ClassVar[int] = 1
-    during_random: ClassVar[bool] = False  # starts after the random decisions
 
     def init(self, key: Array, spec: Spec) -> ActorCriticState:
         """Initial parameters, optimisers and targets. The key is consumed."""
@@ -57,6 +55,6 @@ class DDPG(ActorCritic):
         rate = factor * self.policy_learning_rate
         state, (of_policy, *_) = self.policy_step(state, rate, loss)
         metrics = {"ddpg/critic_loss": of_critic, "ddpg/policy_loss": of_policy, "ddpg/q": q}
-        policy = self.followed(state.target_policy, state.policy)
-        critic = self.followed(state.target, state.critic)
+        old, new = (state.target_policy, state.target), (state.policy, state.critic)
+        policy, critic = statistics.soft_target_update(old, new, self.tau)
         return state.replace(target_policy=policy, target=critic), metrics

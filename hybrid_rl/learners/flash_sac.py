@@ -15,7 +15,7 @@ learning rate falls by half over 1,000,000 decisions, here it is constant.
 
 import math
 from dataclasses import KW_ONLY
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any
 
 import jax
 import jax.numpy as jnp
@@ -46,8 +46,6 @@ class FlashSAC(ActorCritic):
     batch_size: Count = 512
     batches: Count = 2  # steps of the critic for each step of the policy
     updates: float = 0.5  # steps of the policy per decision
-
-    during_random: ClassVar[bool] = False  # starts after the random decisions
 
     @property
     def _batched(self) -> tuple[Any, Any]:

@@ -52,7 +52,8 @@ class ModelBased(SoftActorCritic):
     branch_steps: Natural = 20  # longest branch [decisions]; 0: starts at the states of the batch
     branch_margin: Positive | None = None  # [ranges] beyond data; None: no end, or 3 with history
     change_limit: Positive = 100.0  # of an imagined state, in largest real changes: none overflows
-    branch_memory: int = 25_600  # imagined transitions that are kept; 0: drawn for each update
+    branch_memory: Natural = 25_600  # imagined transitions that are kept, as whole batches;
+    # fewer than one: they are drawn for each update
     alpha: Positive = 0.1  # initial temperature
     discount: Discount = 0.995
     updates: float = 2  # per decision
@@ -63,9 +64,6 @@ class ModelBased(SoftActorCritic):
         if self.value_steps is not None and not 0 <= self.value_steps <= self.steps:
             words = f"must be a whole number from 0 to steps={self.steps}, or null for all"
             raise FieldError(self, "value_steps", words)
-        if self.branch_memory % self.batch_size:
-            words = f"must be 0 or a multiple of the batch, {self.batch_size}"
-            raise FieldError(self, "branch_memory", words)
 
     @property
     def _value_steps(self) -> int:
@@ -75,7 +73,7 @@ class ModelBased(SoftActorCritic):
     def init(self, key: Array, spec: Spec) -> ModelBasedState:
         """Initial parameters, without branches. The key is consumed."""
         kept = None
-        if self.branch_steps and self.branch_memory:
+        if self.branch_steps and self.branch_memory >= self.batch_size:
             sizes = self.batch_size, self.branch_memory, spec.n, spec.act
             kept = branches.begin(*sizes, self.branch_steps, whole=not self._value_steps)
         learner = self.begun(key, spec, self.alpha)

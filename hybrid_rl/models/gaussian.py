@@ -109,9 +109,9 @@ class Gaussian:
         return history.shifted(x, u, new, params["dt"]) if "dt" in params else new
 
     def _onward(self, params: dict[str, Any], x: Array) -> Array:
-        """The next observation [...] without a change, at x [..., n]."""
+        """The next observation [...] without a change at x [..., n]; after a history o + v dt."""
         new = params["change"].mean.size
-        return history.onward(x, new, params["dt"]) if "dt" in params else x
+        return x[..., :new] + params["dt"] * x[..., new : 2 * new] if "dt" in params else x
 
     def _inputs(self, x: Array) -> Array:
         return x if self.inputs is None else x[jnp.array(self.inputs)]

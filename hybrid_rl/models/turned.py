@@ -81,18 +81,14 @@ class Turned:
 
     def loss(self, params: Any, obs: Array, action: Array, next_obs: Array, key: Array) -> Array:
         """Mean loss [] of transitions [members * B, ...]. The key is consumed."""
-        return self.model.loss(params, *self._batch(obs, action, next_obs), key)
-
-    def _into(self, x: Array, u: Array) -> tuple[Array, Array, Array]:
-        """The heading [] at x [n], and x and u [m] in its frame."""
-        a = jax.lax.stop_gradient(self.world.heading(x))
-        return a, self.world.turned(x, -a), self.world.turned_action(u, -a)
-
-    def _batch(self, obs: Array, action: Array, next_obs: Array) -> tuple[Array, Array, Array]:
-        """Transitions [B, ...] in the frames of their first observations."""
 
         def one(x: Array, u: Array, after: Array) -> tuple[Array, Array, Array]:
             a, y, v = self._into(x, u)
             return y, v, self.world.turned(after, -a)
 
-        return jax.vmap(one)(obs, action, next_obs)
+        return self.model.loss(params, *jax.vmap(one)(obs, action, next_obs), key)
+
+    def _into(self, x: Array, u: Array) -> tuple[Array, Array, Array]:
+        """The heading [] at x [n], and x and u [m] in its frame."""
+        a = jax.lax.stop_gradient(self.world.heading(x))
+        return a, self.world.turned(x, -a), self.world.turned_action(u, -a)

@@ -40,7 +40,8 @@ class MLP(nn.Module):
     @nn.compact
     def __call__(self, x: Array) -> Array:
         """The outputs y [..., out] for x [..., d]."""
-        kind, of_products = precision.of_hidden(), precision.of_products()
+        kind = jnp.bfloat16 if precision.current() == "bf16" else None  # None: that of weights
+        of_products = precision.of_products()
         for width in self.hidden:
             x = nn.Dense(width, kernel_init=SPREAD, dtype=kind, precision=of_products)(x)
             if self.layer_norm:

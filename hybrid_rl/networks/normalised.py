@@ -14,19 +14,21 @@ that of CrossQ (Bhatt et al. 2024), the projection that of SimbaV2 (Lee et al. 2
 with orthogonal weights, these with random unit vectors.
 """
 
-from typing import Any
+from typing import Annotated, Any
 
 import jax
 import jax.numpy as jnp
 from flax import linen as nn
 from jax import Array
 
-from hybrid_rl.fields import FieldError
+from hybrid_rl.fields import Count, Must
 from hybrid_rl.networks import precision
 
 EXPANSION = 4  # width of a block's inner layer, in widths of the network
 MOMENTUM = 0.99  # of the running statistics
 EPSILON = 1e-5  # added to variances
+ONE_WIDTH = Must(lambda hidden: len({*hidden}) == 1, "be one width, once for each block")
+Blocks = Annotated[tuple[Count, ...], ONE_WIDTH]  # type of a part's field
 BEGIN = nn.initializers.normal(1.0)  # `constrained` gives the vectors norm 1
 
 
@@ -56,12 +58,6 @@ class NormalisedNet(nn.Module):
             x = x + nn.relu(normal(linear(inner, self.width)))
         head = nn.Dense(self.out, kernel_init=BEGIN, precision=of_products, name="head")
         return head(nn.RMSNorm()(x))
-
-
-def check(part: Any) -> None:
-    """Raise FieldError unless `hidden` of a part is one width, once for each block."""
-    if len(set(part.hidden)) != 1:
-        raise FieldError(part, "hidden", "must be one width, once for each block")
 
 
 def init(net: NormalisedNet, key: Array, size: int) -> dict[str, Any]:

@@ -11,10 +11,7 @@
 A program has the precision in which it was traced: `choose` sets it for a run, `using` for a block.
 """
 
-from typing import Any
-
 import jax
-import jax.numpy as jnp
 from jax.lax import Precision
 
 OF_DEVICE = {"auto": {"gpu": "tf32"}, "mixed": {"gpu": "bf16"}}  # by kind of device, else float32
@@ -37,8 +34,3 @@ def current() -> str:
 def of_products() -> Precision:
     """The precision of a network's products of float32 matrices."""
     return Precision.HIGHEST if current() == "float32" else Precision.DEFAULT
-
-
-def of_hidden() -> Any:
-    """The type of hidden layers; None: that of inputs and weights."""
-    return jnp.bfloat16 if current() == "bf16" else None

@@ -14,8 +14,8 @@ from jax import Array
 
 from hybrid_rl.core.squashing import Squashed, sampled
 from hybrid_rl.fields import part
-from hybrid_rl.networks import Widths, normalised
-from hybrid_rl.networks.normalised import NormalisedNet
+from hybrid_rl.networks import normalised
+from hybrid_rl.networks.normalised import Blocks, NormalisedNet
 from hybrid_rl.types import Spec
 
 
@@ -23,12 +23,9 @@ from hybrid_rl.types import Spec
 class UnitGaussian(Squashed):
     """A stochastic policy on [-1, 1]^m."""
 
-    hidden: Widths = (128, 128)  # the width, once for each residual block
+    hidden: Blocks = (128, 128)  # the width, once for each residual block
     log_std_min: float = -10.0
     log_std_max: float = 2.0
-
-    def __post_init__(self) -> None:
-        normalised.check(self)
 
     def _net(self, out: int) -> NormalisedNet:
         return NormalisedNet(self.hidden[0], len(self.hidden), out)

@@ -7,8 +7,8 @@ for each of its entries. b is that of core.returns.
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core.returns import bonus
-from hybrid_rl.fields import FieldError, NotNegative, part
+from hybrid_rl.core.returns import bonus, quantities
+from hybrid_rl.fields import NotNegative, part
 from hybrid_rl.protocols import Measured
 
 
@@ -22,9 +22,7 @@ class Aim:
     effort: NotNegative = 0.05  # c, of actions in [-1, 1]
 
     def __post_init__(self) -> None:
-        known = self.world.quantities(jnp.zeros(self.world.spec.obs))
-        if self.quantity not in known:
-            raise FieldError(self, "quantity", f"choose one of {', '.join(known)}")
+        quantities(self, self.quantity)
 
     def reward_of(self, x: Array, u: Array, after: Array) -> Array:
         """The reward [] of action u [m], which led to the observation `after` [o]."""

@@ -6,10 +6,9 @@ q is the object's position seen from the task's target, e that seen from the han
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.fields import FieldError, NotNegative, part
+from hybrid_rl.core.returns import quantities
+from hybrid_rl.fields import NotNegative, part
 from hybrid_rl.protocols import Measured
-
-QUANTITIES = ("block", "reach")
 
 
 @part
@@ -22,9 +21,7 @@ class Push:
     effort: NotNegative = 0.01  # c, of actions in [-1, 1]
 
     def __post_init__(self) -> None:
-        known = self.world.quantities(jnp.zeros(self.world.spec.obs))
-        if missing := [name for name in QUANTITIES if name not in known]:
-            raise FieldError(self, "world", f"has no {missing[0]}, only {', '.join(known)}")
+        quantities(self, "block", "reach")
 
     def reward_of(self, x: Array, u: Array, after: Array) -> Array:
         """The reward [] of action u [m], which led to the observation `after` [o]."""

@@ -10,8 +10,8 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core.returns import bonus
-from hybrid_rl.fields import FieldError, NotNegative, Positive, part
+from hybrid_rl.core.returns import bonus, quantities
+from hybrid_rl.fields import NotNegative, Positive, part
 from hybrid_rl.protocols import Measured
 
 WIDTH = 0.04  # [rad] of the sigmoid
@@ -28,10 +28,7 @@ class Run:
     price: NotNegative = 10.0  # p, of a decision with a larger pitch
 
     def __post_init__(self) -> None:
-        known = self.world.quantities(jnp.zeros(self.world.spec.obs))
-        for name in ("speed",) if self.level is None else ("speed", "pitch"):
-            if name not in known:
-                raise FieldError(self, "world", f"has no {name}, only {', '.join(known)}")
+        quantities(self, "speed", *([] if self.level is None else ["pitch"]))
 
     def reward_of(self, x: Array, u: Array, after: Array) -> Array:
         """The reward [] of action u [m], which led to the observation `after` [o]."""

@@ -230,9 +230,7 @@ class OnlineLearner:
             self._advance()
         with lock(Path(folder), "folder") as path, self._lock:
             if (path / "config.yaml").exists():
-                env = run_folder.parse_config(path, "folder").get("env")
-                if (env or {}).get("_target_") != OUTSIDE:
-                    raise UsageError(f"folder={path}: holds a run that train wrote; choose another")
+                _check_ours(run_folder.parse_config(path, "folder"), path)
             shelf = Shelf(self._loop, [path / "checkpoints"], [written(self.config)])
             shelf.save(learner.state, Record([[]], [None], step=learner.read))
             run_folder.write(path, self.config)
@@ -246,8 +244,7 @@ class OnlineLearner:
             CheckpointError: if its checkpoint is not sound.
         """
         config = run_folder.read(Path(folder), "folder")
-        if config.env.get("_target_") != OUTSIDE:
-            raise UsageError(f"folder={folder}: was not written by OnlineLearner.save")
+        _check_ours(config, folder)
         refuse_edits(config, Path(folder))
         learner = cls(config, learn=learn)
         learner.close()
@@ -273,6 +270,12 @@ class OnlineLearner:
             raise self._error
         if self._closed:
             raise UsageError("this learner is closed")
+
+
+def _check_ours(config: DictConfig, folder: Path | str) -> None:
+    """Raise UsageError unless the configuration of a folder is that of `save`."""
+    if (config.get("env") or {}).get("_target_") != OUTSIDE:
+        raise UsageError(f"folder={folder}: holds a run that OnlineLearner did not write")
 
 
 def _config(method: Any, sizes: dict[str, Any], seed: int, config_dir: Any) -> DictConfig:

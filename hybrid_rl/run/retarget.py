@@ -108,7 +108,9 @@ def aimed(
     named = {text.partition("=")[0]: text for text in overrides}
     if "controllers" in config and all(key.startswith("planner.") for key in named):
         return _adjusted(trained, OmegaConf.create(config), overrides), None
-    composed = plain(_composed(overrides, config_dir))
+    words = [*overrides, *([search_path(config_dir)] if config_dir else [])]
+    found = plain(configuration.composed("retarget", forced(words, GROUPS)))
+    composed = {**dict.fromkeys(configuration.PAID), **found}
     typed = [key for key in named if "." in key]
     raw = complete({**UNLEARNED, **config, **composed}, [*composed], typed)
     for key in typed:
@@ -210,13 +212,6 @@ def _priced(config: dict[Any, Any], limit: Any) -> bool:
     )
     learned = "reward_model" in config and part_class(config["reward_model"]["_target_"])
     return bool(before) and before == now and hasattr(learned, "init")
-
-
-def _composed(overrides: Sequence[str], config_dir: str | Path | None) -> DictConfig:
-    """conf/retarget.yaml with the overrides of a command."""
-    words = [*overrides, *([search_path(config_dir)] if config_dir else [])]
-    found: Any = configuration.composed("retarget", forced(words, GROUPS))
-    return OmegaConf.create({**dict.fromkeys(configuration.PAID), **found})
 
 
 def disturbed(config: DictConfig, changes: Mapping[str, str]) -> Episode:

@@ -56,16 +56,6 @@ def complete(
     raw: what was composed, with its references. typed: keys of the user, which are left out where
     a part has no such field; `refusal` is the line about them.
     """
-    _drop(raw, typed)
-    read: dict[str, Any] = {}
-    for root in roots:
-        if root in raw:
-            _visit(raw, root, raw[root], read)
-    return _kept(raw, read)
-
-
-def _drop(raw: dict[str, Any], typed: Iterable[str]) -> None:
-    """Take out the typed keys of which a part has no field."""
     for path in typed:
         above, _, name = source(raw, path).rpartition(".")
         node = select(raw, above) if above else raw
@@ -73,6 +63,11 @@ def _drop(raw: dict[str, Any], typed: Iterable[str]) -> None:
             fields = _fields(node, above)
             if fields is not None and name not in fields:
                 del node[name]
+    read: dict[str, Any] = {}
+    for root in roots:
+        if root in raw:
+            _visit(raw, root, raw[root], read)
+    return _kept(raw, read)
 
 
 def _fields(node: dict[str, Any], path: str) -> Mapping[str, inspect.Parameter] | None:

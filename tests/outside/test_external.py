@@ -114,5 +114,5 @@ def test_a_picture_of_an_environment_that_draws_none_is_one_line():
 
 def test_planning_on_the_environment_itself_is_refused():
     env = counting()
-    with pytest.raises(UsageError, match="steps on the host"):
+    with pytest.raises(UsageError, match="steps outside JAX"):
         env.step(env.reset(jax.random.key(0)), jnp.zeros(1))

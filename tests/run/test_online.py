@@ -180,7 +180,7 @@ def test_save_replaces_what_it_wrote_and_no_other_run(tmp_path):
     learner.save(tmp_path / "mine")
     assert [path.name for path in newer.iterdir()] == [str(first)]
     (tmp_path / "config.yaml").write_text("task: pendulum\nenv: {dt: 1.0}\n")
-    with pytest.raises(UsageError, match="holds a run that train wrote"):
+    with pytest.raises(UsageError, match="holds a run that OnlineLearner did not write"):
         learner.save(tmp_path)
     assert not (tmp_path / "checkpoints").exists()
 

@@ -149,11 +149,11 @@ def test_one_process_moves_a_robot(tmp_path, capfd, monkeypatch):
     ("name", "value", "line"),
     [
         ("reward", None, "lacks reward"),
-        ("dt", None, "dt=None: must be one finite number"),
-        ("dt", math.inf, "dt=inf: must be one finite number"),
-        ("obs", 2.5, "obs a whole number"),
-        ("low", [-math.inf], "low=.*: must be finite numbers"),
-        ("safe", [0.0, 0.0, 0.0], "safe must be one number, or as many as low"),
+        ("dt", None, "dt=null: must be a number"),
+        ("dt", math.inf, "dt=inf: must be above 0 and finite"),
+        ("obs", 2.5, "obs=2.5: must be a whole number"),
+        ("low", [-math.inf], "low=.*: must hold finite numbers"),
+        ("safe", [0.0, 0.0, 0.0], "safe=.*: must be one number, or as many as low"),
     ],
 )
 def test_what_no_robot_can_have_is_named(name, value, line):
@@ -168,7 +168,7 @@ def test_what_no_robot_can_have_is_named(name, value, line):
 @pytest.mark.parametrize(
     ("words", "line"),
     [
-        (["task=robot", "algo=sac"], "give MODULE:CLASS of your robot"),
+        (["task=robot", "algo=sac"], "env.make=: cannot be imported .give MODULE:NAME"),
         ([*LINE, "env.stale=0"], r"env\.stale=0: must be above 0"),
         ([*LINE, "env.lag=-1"], "must be 0 or more"),
         ([*LINE, "episode.delay=1"], "put a Gymnasium wrapper around"),

@@ -12,7 +12,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.fields import FieldError, Positive, has, part
+from hybrid_rl.fields import Inside, Positive, check_span, has, part
 
 OUTLINE, GRID = 256, 64  # points of the outline; starts a side of its search
 NEWTON, NEAR = 20, 1e-4  # iterations; |d - r| of a solution, in the box's shorter side
@@ -28,12 +28,11 @@ class KnownMap:
 
     world: Annotated[Any, has("distance", "needs contacts")]
     width: Positive = 0.008  # w [m]
-    low: float = 0.01  # lo: at least twice the sensor's rate of false contacts
-    high: float = 0.99  # hi
+    low: Inside = 0.01  # lo: at least twice the sensor's rate of false contacts
+    high: Inside = 0.99  # hi
 
     def __post_init__(self) -> None:
-        if not 0 < self.low < self.high < 1:
-            raise FieldError(self, "low", f"must lie between 0 and high={self.high}")
+        check_span(self)
 
     @property
     def middle(self) -> tuple[float, float]:

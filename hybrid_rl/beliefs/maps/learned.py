@@ -15,7 +15,7 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.data import archive
-from hybrid_rl.fields import FieldError, part
+from hybrid_rl.fields import Inside, check_span, part
 
 FIELDS = ("f", "low", "high", "slope")
 WRITE = "`python -m hybrid_rl.figures study=contact_maps view=map` writes one"
@@ -28,12 +28,11 @@ class LearnedMap:
     file: str
     box_low: tuple[float, ...] = (0.0, 0.0)  # [m] of the plane
     box_high: tuple[float, ...] = (1.0, 1.0)
-    low: float = 0.04  # lo: at least twice the sensor's rate of false contacts
-    high: float = 0.96  # hi
+    low: Inside = 0.04  # lo: at least twice the sensor's rate of false contacts
+    high: Inside = 0.96  # hi
 
     def __post_init__(self) -> None:
-        if not 0 < self.low < self.high < 1:
-            raise FieldError(self, "low", f"must lie between 0 and high={self.high}")
+        check_span(self)
         arrays, prefix = _load(self.file), f"map.file={self.file}:"
         box = [*self.box_low, *self.box_high]
         side = 1e-5 * float(np.min(np.subtract(self.box_high, self.box_low)))
