@@ -1,7 +1,4 @@
-"""The pages: numbers are those of docs/results, links lead somewhere, the paper is as JOSS asks.
-
-`make pages` writes the numbers.
-"""
+"""The pages: numbers are those of docs/results, links lead somewhere, the paper is as JOSS asks."""
 
 import json
 import re

@@ -39,8 +39,7 @@ def test_success_is_upright() -> None:
 
 
 @pytest.mark.parametrize(
-    ("fields", "expected"),
-    [({}, "000"), ({"rail": 1.0}, "010"), ({"turns": 0.75}, "001")],
+    ("fields", "expected"), [({}, "000"), ({"rail": 1.0}, "010"), ({"turns": 0.75}, "001")]
 )
 def test_the_end_of_the_rail_or_of_a_turn_ends_an_episode(fields, expected) -> None:
     """At the start, beyond 1 m, and 0.8 turns away from hanging."""

@@ -1,7 +1,4 @@
-"""A checkpoint is complete or absent, and is restored bit for bit.
-
-Also while processes are killed, disks are full, and others read it.
-"""
+"""A checkpoint is complete or absent, whatever is killed or full, and restored bit for bit."""
 
 import errno
 import resource

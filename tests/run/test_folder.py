@@ -1,7 +1,4 @@
-"""The config.yaml of a run folder: it builds the run again, or is blamed in one line.
-
-A start undoes itself.
-"""
+"""The config.yaml of a run folder builds it again, or is blamed; a start undoes itself."""
 
 import json
 import re
@@ -10,16 +7,7 @@ import shutil
 import pytest
 import yaml
 from omegaconf import OmegaConf
-from tiny import (
-    TINY,
-    call_train,
-    contents,
-    demonstrate,
-    finished,
-    only_line,
-    refusal,
-    summary_of,
-)
+from tiny import TINY, call_train, contents, demonstrate, finished, only_line, refusal, summary_of
 
 from hybrid_rl import __version__, evaluate
 from hybrid_rl.analysis.results import RunFolder
@@ -137,11 +125,7 @@ def test_a_folder_of_a_start_that_was_killed_is_taken_and_one_of_a_run_is_not(tm
         pass
 
 
-METHODS = {
-    "hybrid_stochastic": "halfcheetah",
-    "kle3": "pendulum",
-    "bc": "cartpole",
-}
+METHODS = {"hybrid_stochastic": "halfcheetah", "kle3": "pendulum", "bc": "cartpole"}
 
 
 @pytest.fixture
@@ -209,10 +193,7 @@ def test_a_setting_is_named_by_its_last_names(trained):
     assert settings.word("env") == "Pendulum"
     assert settings.word("full.policy") == settings.word("learners.policy.policy")
     assert settings.number("learners.policy.batch_size") == settings.number("batch_size") == 16
-    for key, words in (
-        ("hiden", "it has policy.hidden$"),
-        ("_target_", "has several values in "),
-    ):
+    for key, words in (("hiden", "it has policy.hidden$"), ("_target_", "has several values in ")):
         with pytest.raises(config.UsageError, match=f"group={key}: .*{words}"):
             settings.word(key)
     with pytest.raises(config.UsageError, match=r"x=batch_sise: not in .*batch_size"):
