@@ -10,6 +10,7 @@ in another room: `--lower` moves a room's budget to what stands, as long as the 
 
 import ast
 import json
+import re
 import sys
 from collections.abc import Iterator
 from functools import cache
@@ -130,9 +131,10 @@ def tested() -> float:
 
 
 def words() -> int:
-    """Words of README and of the pages."""
+    """Words that a reader sees of README and of the pages: without comments."""
     pages = [TOP / "README.md", *sorted((TOP / "docs").rglob("*.md"))]
-    return sum(len(page.read_text(encoding="utf-8").split()) for page in pages)
+    texts = (page.read_text(encoding="utf-8") for page in pages)
+    return sum(len(re.sub("<!--.*?-->", " ", text, flags=re.DOTALL).split()) for text in texts)
 
 
 def measures() -> dict[str, float]:
