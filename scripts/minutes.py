@@ -156,7 +156,7 @@ def merged(kept: dict[str, Any], found: dict[str, Any]) -> dict[str, Any]:
     return kept | found | both | {"alone": kept["alone"] | found["alone"]}
 
 
-def place(curve: Curve) -> tuple[int, int]:
+def order(curve: Curve) -> tuple[int, int]:
     """Of a curve in the picture; unknown robots and methods come last."""
     robots, methods = [*ROBOTS, curve.task], [*METHODS, curve.label]
     return robots.index(curve.task), methods.index(curve.label)
@@ -164,7 +164,7 @@ def place(curve: Curve) -> tuple[int, int]:
 
 def draw(found: dict[str, Any]) -> "Figure":
     """A panel for each robot, over the same minutes; grey while settings=quick is compiled."""
-    curves = sorted(learning_curves.from_numbers(found), key=place)
+    curves = sorted(learning_curves.from_numbers(found), key=order)
     end = int(np.ceil(max(one.x[-1] for one in curves) / 60))
     titles = {one.task: ROBOTS.get(one.task, one.task) for one in curves}
     drawn = [replace(one, task=titles[one.task], label=typed(one.label)) for one in curves]

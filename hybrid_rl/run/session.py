@@ -7,6 +7,7 @@ uninterrupted one. A learner that reaches NaN or infinity ends; the others of it
 """
 
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from time import monotonic, perf_counter
 from typing import Any
@@ -104,11 +105,13 @@ class Session:
             import orbax.checkpoint  # noqa: F401  # 1 s, too long for a checkpoint at a signal
 
             began = perf_counter()
-            self.program = self.loop.compile(self.state)
-            memory.check(self.loop, self.program)
             modes = {mode: self.controllers[mode] for mode in self.schedule.eval_modes}
-            params = self.loop.params(self.state)
-            self.evaluations = Evaluations(self.loop, modes, self.schedule.eval_episodes, params)
+            with ThreadPoolExecutor(1) as beside:  # one program alone leaves cores idle
+                program = beside.submit(self.loop.compile_trace, self.loop.trace(self.state))
+                params, episodes = self.loop.params(self.state), self.schedule.eval_episodes
+                self.evaluations = Evaluations(self.loop, modes, episodes, params)
+                self.program = program.result()
+            memory.check(self.loop, self.program)
             self.compile_s = perf_counter() - began
         self.progress.note(f"compiled in {self.compile_s:.1f} s")
 
