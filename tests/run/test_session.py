@@ -15,11 +15,9 @@ from hybrid_rl.errors import DivergenceError
 from hybrid_rl.run import schedule, session
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.evaluations import Evaluations
-from hybrid_rl.run.logs import records
 from hybrid_rl.run.schedule import Pace, Schedule, Speed
 from hybrid_rl.run.session import Session
 from hybrid_rl.settings.words import quoted
-from hybrid_rl.training.loop import Loop
 from scripts import interrupt
 
 SAC = ["algo=sac", "num_seeds=2"]
@@ -95,19 +93,6 @@ def test_a_call_ends_at_marks_and_where_decisions_change():
     assert [plan.row_due(step, 7) for step in (301, 308, 504, 994, 1001)] == [
         *(True, False, True, False, True),
     ]
-
-
-def test_sums_in_parts_are_the_sums_as_one():
-    values = np.random.default_rng(0).normal(size=(50, 3)).astype(np.float32)
-    values[3:20, 1], values[:, 2] = np.nan, np.nan
-    whole, got = records.added({}, {"b": values}), {}
-    for cut in np.split(values, [7, 8, 31]):
-        got = records.added(got, {"b": cut, "a": -cut, "episode/done": cut})
-    assert list(got) == ["b", "a"]
-    assert got["b"].tobytes() == whole["b"].tobytes()
-    rows = records.means(got, 3, 50)
-    np.testing.assert_allclose([row["b"] for row in rows[:2]], np.nanmean(values[:, :2], 0), 1e-6)
-    assert rows[2] == {"step": 50, "learner": 2}
 
 
 def test_a_run_stopped_anywhere_goes_on_bit_for_bit(whole, short, tmp_path, capsys):
@@ -241,14 +226,3 @@ def test_with_debug_nans_a_run_ends_in_the_call_that_made_them_and_not_before(
     break_learner(monkeypatch, 1, 200)
     with jax.debug_nans(True), pytest.raises(DivergenceError, match="seed 0, step 250: "):
         run(tmp_path / "run", *SAC)
-
-
-def test_a_learner_is_read_back_from_the_loop():
-    """A row of the state is replaced, and nothing else."""
-    made = {"a": jnp.arange(6.0).reshape(3, 2), "key": jax.random.split(jax.random.key(0), 3)}
-    loop = Loop(agent=None, seeds=(0, 1, 2), stride=1)
-    wanted = np.array([[0, 1], [9, 9], [4, 5]])
-    key = jax.random.key(7)
-    got = loop.with_learner(loop.on_devices(made), 1, {"a": jnp.full(2, 9.0), "key": key})
-    np.testing.assert_array_equal(got["a"], wanted)
-    assert jax.random.key_data(got["key"])[1].tolist() == jax.random.key_data(key).tolist()
