@@ -93,6 +93,22 @@ def limited(size: int) -> Iterator[None]:
         signal.signal(signal.SIGXFSZ, heard)
 
 
+def write_run(folder: Path, settings: str, metrics: dict[str, dict], **summary: Any) -> Path:
+    """A run folder; settings: its YAML; metrics: name -> step -> values of the seeds 0, 1, ..."""
+    folder.mkdir(parents=True, exist_ok=True)
+    rows = [
+        {"step": step, "seed": seed, "wall_s": step / 10, name: value}
+        for name, values in metrics.items()
+        for step, each in values.items()
+        for seed, value in enumerate(each)
+    ]
+    (folder / "metrics.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
+    (folder / "config.yaml").write_text(settings)
+    if summary:
+        (folder / "summary.json").write_text(json.dumps(summary))
+    return folder
+
+
 def summary_of(folder: Path) -> dict:
     """What summary.json of a run holds."""
     return json.loads((folder / "summary.json").read_text())

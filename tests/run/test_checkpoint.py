@@ -55,12 +55,6 @@ def test_a_named_step_is_taken(three):
         checkpoint.restore(three, state_at(0), step=10)
 
 
-def test_a_part_of_the_state_is_enough(three):
-    part = state_at(0)._replace(replay=None)
-    _, result, _, _ = checkpoint.restore(three, part)
-    assert_same(result, state_at(30)._replace(replay=None))
-
-
 def truncate(folder):
     path = largest_file(folder / "state")
     path.write_bytes(path.read_bytes()[:-1])

@@ -1,6 +1,5 @@
 """A run is stopped anywhere, its learners diverge alone, its numbers are what their names say."""
 
-import json
 import shlex
 import signal
 import time
@@ -15,6 +14,8 @@ from hybrid_rl.errors import DivergenceError
 from hybrid_rl.run import schedule, session
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.evaluations import Evaluations
+from hybrid_rl.run.folder import read
+from hybrid_rl.run.saved import build_run, restore
 from hybrid_rl.run.schedule import Pace, Schedule, Speed
 from hybrid_rl.run.session import Session
 from hybrid_rl.settings.words import quoted
@@ -121,34 +122,26 @@ def break_learner(patch, number, step):
     """From `step` on the critic of a learner is no number."""
     advance = Session._advance
 
+    def spoilt(x):
+        return x.at[number].set(jnp.nan) if jnp.issubdtype(x.dtype, jnp.floating) else x
+
     def broken(self):
         if self.step == step:
-            spoil = self.state.learners["policy"]
-            leaves, form = jax.tree.flatten(spoil)
+            learners = self.state.learners
             with jax.debug_nans(False):
-                leaves = [
-                    x.at[number].set(jnp.nan) if jnp.issubdtype(x.dtype, jnp.floating) else x
-                    for x in leaves
-                ]
-            learners = self.state.learners | {"policy": jax.tree.unflatten(form, leaves)}
-            self.state = self.state.replace(learners=learners)
+                policy = jax.tree.map(spoilt, learners["policy"])
+            self.state = self.state.replace(learners=learners | {"policy": policy})
         advance(self)
 
     patch.setattr(Session, "_advance", broken)
 
 
 def finite(folder):
-    """Whether the newest checkpoint is."""
-    step = checkpoint.steps(folder / "checkpoints")[-1]
-    parent = folder / "checkpoints" / str(step)
-    kinds = json.loads((parent / "leaves.json").read_text())
-    like = {
-        name: jax.ShapeDtypeStruct(tuple(kind["shape"]), kind["dtype"])
-        for name, kind in kinds.items()
-        if name.startswith("learners")
-    }
-    result = checkpoint.restore(folder / "checkpoints", like, step)[1]
-    return bool(result) and all(np.isfinite(leaf).all() for leaf in result.values())
+    """Whether the learners of the newest checkpoint are."""
+    step, state, _ = restore(folder, build_run(read(folder, "run")))
+    learners = jax.tree.leaves(state.learners)
+    newest = step == checkpoint.steps(folder / "checkpoints")[-1]
+    return newest and all(np.isfinite(leaf).all() for leaf in learners)
 
 
 def test_one_learner_diverges_and_the_other_goes_on(whole, tmp_path, capfd):
