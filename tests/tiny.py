@@ -93,14 +93,16 @@ def limited(size: int) -> Iterator[None]:
         signal.signal(signal.SIGXFSZ, heard)
 
 
-def write_run(folder: Path, settings: str, metrics: dict[str, dict], **summary: Any) -> Path:
-    """A run folder; settings: its YAML; metrics: name -> step -> values of the seeds 0, 1, ..."""
+def write_run(
+    folder: Path, settings: str, metrics: dict[str, dict], first: int = 0, **summary: Any
+) -> Path:
+    """A run folder; settings: its YAML; metrics: name -> step -> values of the seeds from first."""
     folder.mkdir(parents=True, exist_ok=True)
     rows = [
         {"step": step, "seed": seed, "wall_s": step / 10, name: value}
         for name, values in metrics.items()
         for step, each in values.items()
-        for seed, value in enumerate(each)
+        for seed, value in enumerate(each, first)
     ]
     (folder / "metrics.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
     (folder / "config.yaml").write_text(settings)

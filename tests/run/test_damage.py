@@ -8,17 +8,7 @@ import programs
 import pytest
 from states import flip
 from test_session import break_learner
-from tiny import (
-    TINY,
-    call,
-    call_train,
-    contents,
-    finished,
-    limited,
-    only_line,
-    refusal,
-    summary_of,
-)
+from tiny import TINY, call, call_train, contents, finished, limited, refusal, summary_of
 
 from hybrid_rl import evaluate, export
 from hybrid_rl.cli import command
@@ -58,8 +48,7 @@ def test_without_a_sound_checkpoint_nothing_is_done(copied, capfd):
 def test_a_full_disk_is_named(copied, capfd):
     """Also where the system itself names no file: it refuses any longer than 1,000 bytes."""
     with limited(1000):
-        assert call_train(f"resume={copied}", "total_steps=700") == 1
-    printed = only_line(capfd)
+        printed = refusal(capfd, f"resume={copied}", "total_steps=700", code=1)
     assert f"File too large: '{copied}/config.yaml'" in printed
     assert checkpoint.steps(copied / "checkpoints") == [500, 600]
     assert not list(copied.glob(".*"))
@@ -79,8 +68,7 @@ def test_a_world_that_breaks_is_named_and_can_be_mended(copied, monkeypatch, cap
         patch.setattr(Pendulum, "step", step)
         patch.setattr(programs, "KEPT", [])
         line = [*TINY, "algo=sac", "checkpoint_every=50", f"run_dir={folder}"]
-        assert call_train(*line) == 1
-    line = only_line(capfd)
+        line = refusal(capfd, *line, code=1)
     assert line.startswith("hybrid_rl: seed 0, step 51: world/reward is not finite")
     assert "; checkpoint 50 is intact: fix what fails and resume it" in line
     assert not summary_of(folder)["finished"]

@@ -10,16 +10,7 @@ import shutil
 import pytest
 import yaml
 from omegaconf import OmegaConf
-from tiny import (
-    TINY,
-    call_train,
-    contents,
-    demonstrate,
-    finished,
-    only_line,
-    refusal,
-    summary_of,
-)
+from tiny import TINY, call_train, contents, demonstrate, finished, refusal, summary_of
 
 from hybrid_rl import __version__, evaluate
 from hybrid_rl.analysis.results import RunFolder
@@ -121,8 +112,8 @@ def test_a_start_that_fails_leaves_the_disk_as_it_was(tmp_path, monkeypatch, cap
             (folder / "x").unlink()
     before = contents(tmp_path)
     monkeypatch.setattr(Loop, "memory", lambda *_: 1e15)
-    assert call_train(*TINY, "algo=sac", f"run_dir={folder}") == 1
-    assert "num_seeds=1: the program would take 1,000,000.0 GB" in only_line(capfd)
+    line = refusal(capfd, *TINY, "algo=sac", f"run_dir={folder}", code=1)
+    assert "num_seeds=1: the program would take 1,000,000.0 GB" in line
     assert contents(tmp_path) == before
 
 

@@ -33,35 +33,34 @@ def short(monkeypatch):
     monkeypatch.setattr(Pace, "rounds", lambda self, left: min(left, 7))
 
 
-def stop_at(monkeypatch, step):
-    """A signal comes in the first call that reaches `step`."""
+def when(patch, step, then):
+    """`then` gets the session after the first call that reaches `step`, and after those beyond."""
     advance = Session._advance
 
-    def stopped(self):
+    def advanced(self):
         advance(self)
         if self.step >= step:
-            self.ask(signal.SIGTERM)
+            then(self)
 
-    monkeypatch.setattr(Session, "_advance", stopped)
+    patch.setattr(Session, "_advance", advanced)
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGHUP])
 def test_a_program_that_trains_hears_the_signal_after_the_checkpoint(monkeypatch, tmp_path, number):
     """As though nothing had come between: a script ends, and no loop starts its next run."""
-    folder, advance, heard = tmp_path / "run", Session._advance, []
+    folder, heard = tmp_path / "run", []
 
-    def pressed(self):
-        advance(self)
-        if self.step >= 150 and self.stop is None:
+    def pressed(session):
+        if session.stop is None:
             signal.raise_signal(number)
-            while self.stop is None:
-                time.sleep(0.001)
+        while session.stop is None:
+            time.sleep(0.001)
 
     def handler(*_):
         heard.append(checkpoint.steps(folder / "checkpoints")[-1])
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(Session, "_advance", pressed)
+    when(monkeypatch, 150, pressed)
     before = signal.signal(number, handler)
     try:
         with pytest.raises(KeyboardInterrupt):
@@ -105,7 +104,7 @@ def test_a_run_stopped_anywhere_goes_on_bit_for_bit(whole, short, tmp_path, caps
     begin = [*TINY, *SAC, f"run_dir={quoted(str(folder))}"]
     for step in (123, 300, 600):
         with pytest.MonkeyPatch.context() as patch:
-            stop_at(patch, step)
+            when(patch, step, lambda session: session.ask(signal.SIGTERM))
             assert call_train(*(line or begin)) == 128 + signal.SIGTERM
         printed = capsys.readouterr().out.splitlines()[-1]
         result, line = summary_of(folder), shlex.split(printed)[4:]

@@ -23,16 +23,13 @@ class Page(HTMLParser):
 
     def __init__(self, text):
         super().__init__()
-        self.open, self.attributes, self.ids, self.texts = [], [], [], []
+        self.open, self.attributes, self.texts = [], [], []
         self.feed(text)
 
     def handle_starttag(self, tag, attributes):
         self.attributes += [(tag, name, value) for name, value in attributes]
         if tag not in VOID:
             self.open.append(tag)
-
-    def handle_startendtag(self, tag, attributes):
-        self.attributes += [(tag, name, value) for name, value in attributes]
 
     def handle_endtag(self, tag):
         if tag not in VOID:
