@@ -52,17 +52,10 @@ OF_RESUME = {  # where its line is another one
 }
 
 
-def harm(folder, kind):
-    """Harm config.yaml of a run; the words of the line about it."""
-    pattern, text, words = HARM[kind]
-    file = folder / "config.yaml"
-    file.write_text(re.sub(pattern, text, file.read_text()), errors="surrogateescape")
-    return words
-
-
 @pytest.mark.parametrize("kind", HARM)
 def test_a_damaged_configuration_is_blamed_on_its_file(copied, capfd, kind):
-    words = harm(copied, kind)
+    (pattern, text, words), file = HARM[kind], copied / "config.yaml"
+    file.write_text(re.sub(pattern, text, file.read_text()), errors="surrogateescape")
     before = contents(copied)
     lines = [refusal(capfd, f"run={copied}", of=evaluate.main)]
     assert words in lines[0]
@@ -107,9 +100,8 @@ def test_a_start_that_fails_leaves_the_disk_as_it_was(tmp_path, monkeypatch, cap
     folder = tmp_path / "run"
     if there is not None:
         folder.mkdir()
-        (folder / (there or "x")).write_text("mine")
-        if not there:
-            (folder / "x").unlink()
+    if there:
+        (folder / there).write_text("mine")
     before = contents(tmp_path)
     monkeypatch.setattr(Loop, "memory", lambda *_: 1e15)
     line = refusal(capfd, *TINY, "algo=sac", f"run_dir={folder}", code=1)

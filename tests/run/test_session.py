@@ -27,12 +27,6 @@ SAC = ["algo=sac", "num_seeds=2"]
 whole = finished(*SAC)  # a run of two learners that was never stopped
 
 
-@pytest.fixture
-def short(monkeypatch):
-    """Calls of seven rounds at most, so that they end between the marks."""
-    monkeypatch.setattr(Pace, "rounds", lambda self, left: min(left, 7))
-
-
 def when(patch, step, then):
     """`then` gets the session after the first call that reaches `step`, and after those beyond."""
     advance = Session._advance
@@ -95,11 +89,12 @@ def test_a_call_ends_at_marks_and_where_decisions_change():
     ]
 
 
-def test_a_run_stopped_anywhere_goes_on_bit_for_bit(whole, short, tmp_path, capsys):
+def test_a_run_stopped_anywhere_goes_on_bit_for_bit(whole, tmp_path, monkeypatch, capsys):
     """Between marks, before an evaluation is made, and before the last one is.
 
     The name of the folder means something to the shell, to Hydra, to Orbax and to glob.
     """
+    monkeypatch.setattr(Pace, "rounds", lambda self, left: min(left, 7))  # so a call ends there
     folder, line = tmp_path / "it's hidden=[8,8]", []
     begin = [*TINY, *SAC, f"run_dir={quoted(str(folder))}"]
     for step in (123, 300, 600):
