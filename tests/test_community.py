@@ -5,7 +5,7 @@ import re
 from functools import partial
 
 import pytest
-from tiny import call, refusal
+from tiny import call, refusal, write_run
 
 from hybrid_rl.cli import command
 from hybrid_rl.tools.report import __main__ as report
@@ -67,18 +67,10 @@ def test_the_best_return_of_a_task_comes_first(tmp_path, monkeypatch):
 
 def write(folder, algo, device="cpu: one"):
     """A run of two seeds; the second was not evaluated at the end."""
-    folder.mkdir(parents=True)
-    rows = [
-        {"step": s, "seed": i, "wall_s": 1.0, "eval/return": s + i}
-        for s in (10, 20)
-        for i in (0, 1)
-    ]
-    rows.append({"step": 30, "seed": 0, "wall_s": 1.0, "eval/return": 99})
-    (folder / "metrics.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
-    (folder / "config.yaml").write_text(f"task: hopper\nalgo: {algo}\nseed: 0\n")
+    returns = {"eval/return": {10: [10, 11], 20: [20, 21], 30: [99]}}
     values = {"task": "hopper", "algo": algo, "seeds": [0, 1], "total_steps": 30, "device": device}
-    (folder / "summary.json").write_text(json.dumps(values | {"env_steps_per_s": 51.26}))
-    return folder
+    settings = f"task: hopper\nalgo: {algo}\nseed: 0\n"
+    return write_run(folder, settings, returns, env_steps_per_s=51.26, **values)
 
 
 def test_the_report_of_a_run_is_an_entry_but_for_its_link(tmp_path):

@@ -2,8 +2,11 @@
 
 import hashlib
 import json
+import resource
+import signal
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -75,6 +78,37 @@ def call_train(*arguments: str | Path) -> int:
 def rows_of(folder: Path) -> list[dict]:
     """The rows of metrics.jsonl of a run."""
     return [json.loads(line) for line in (folder / "metrics.jsonl").read_text().splitlines()]
+
+
+@contextmanager
+def limited(size: int) -> Iterator[None]:
+    """The system refuses to write files beyond as many bytes."""
+    heard = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    most = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, most[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, most)
+        signal.signal(signal.SIGXFSZ, heard)
+
+
+def write_run(
+    folder: Path, settings: str, metrics: dict[str, dict], first: int = 0, **summary: Any
+) -> Path:
+    """A run folder; settings: its YAML; metrics: name -> step -> values of the seeds from first."""
+    folder.mkdir(parents=True, exist_ok=True)
+    rows = [
+        {"step": step, "seed": seed, "wall_s": step / 10, name: value}
+        for name, values in metrics.items()
+        for step, each in values.items()
+        for seed, value in enumerate(each, first)
+    ]
+    (folder / "metrics.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
+    (folder / "config.yaml").write_text(settings)
+    if summary:
+        (folder / "summary.json").write_text(json.dumps(summary))
+    return folder
 
 
 def summary_of(folder: Path) -> dict:

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 from scipy.stats import trim_mean
+from tiny import write_run
 
 from hybrid_rl.analysis.curves import area, band, curves, improvement, iqm
 from hybrid_rl.analysis.learning_curves import FEW, comparisons, figure, summary
@@ -15,20 +16,14 @@ from hybrid_rl.errors import UsageError
 def append(folder, **row):
     """One more row of metrics."""
     with (folder / "metrics.jsonl").open("a") as file:
-        file.write(json.dumps({"wall_s": row["step"] / 100, "seed": 0, **row}) + "\n")
+        file.write(json.dumps({"wall_s": row["step"] / 10, "seed": 0, **row}) + "\n")
 
 
 def run(folder, points, seed=0, task="hopper", algo="sac", metric="train/return", **config):
     """A run folder; points: (step, value), or value alone at 10, 20, ..."""
-    folder.mkdir(parents=True)
     lines = "".join(f"{k}: {v}\n" for k, v in {"task": task, "algo": algo, **config}.items())
-    (folder / "config.yaml").write_text(lines)
-    with (folder / "metrics.jsonl").open("w") as file:
-        for i, point in enumerate(points):
-            step, value = point if isinstance(point, tuple) else (10 * (i + 1), point)
-            row = {"step": step, "seed": seed, "wall_s": step / 100, metric: value}
-            file.write(json.dumps(row) + "\n")
-    return folder
+    pairs = [p if isinstance(p, tuple) else (10 * i, p) for i, p in enumerate(points, 1)]
+    return write_run(folder, lines, {metric: {step: [value] for step, value in pairs}}, seed)
 
 
 def test_seeds_with_common_steps_are_averaged_there(tmp_path):
@@ -175,7 +170,7 @@ def test_smoothing_is_a_moving_mean_of_that_many_steps(tmp_path):
 
 def test_wall_time_is_an_x(tmp_path):
     (curve,) = curves(run(tmp_path / "a", [5.0, 6]), x="wall_s")
-    assert curve.x.tolist() == [0.1, 0.2]
+    assert curve.x.tolist() == [1, 2]
     with pytest.raises(UsageError, match="x=hours: not in "):
         curves(tmp_path, x="hours")
 

@@ -1,16 +1,14 @@
 """Drawing without a display: pictures, videos, backends."""
 
 import os
-import resource
-import signal
 import subprocess
 import sys
-from contextlib import contextmanager
 
 import imageio.v3 as iio
 import numpy as np
 import pytest
 from scenes import FIXED, FREE
+from tiny import limited
 
 from hybrid_rl.analysis import drawing
 from hybrid_rl.envs.mujoco import offscreen
@@ -60,19 +58,6 @@ def test_a_gif_goes_round_at_no_more_than_its_speed(tmp_path, draws):
     film = iio.imread(out)
     assert film.shape == (3, 48, 64, 3)
     assert centre(film[2], 0)[1] > centre(film[0], 0)[1] + 0.2
-
-
-@contextmanager
-def limited(size):
-    """The system refuses to write files beyond as many bytes."""
-    heard = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-    most = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (size, most[1]))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, most)
-        signal.signal(signal.SIGXFSZ, heard)
 
 
 @pytest.mark.parametrize("name", ["a.mp4", "a.gif", "a.png", "beside.png"])

@@ -1,4 +1,4 @@
-"""What tools read of runs: parts, decisions, newer checkpoints, other goals, films."""
+"""What tools read of runs: parts, decisions, newer checkpoints, experts."""
 
 import shutil
 
@@ -35,15 +35,6 @@ def test_a_newer_checkpoint_is_read_once(folder, tmp_path):
     later = hr.newest(first, path)
     assert later.step == first.step + 50
     assert hr.newest(later, path) is None
-
-
-def test_a_goal_and_a_body_change_together():
-    read = hr.load("halfcheetah")
-    heavy = hr.retargeted(read, ["reward=speed", "reward.target=2", "env.mass=1.5"])
-    assert (heavy.episode.reward.target, heavy.episode.env.mass) == (2, 1.5)
-    assert (read.episode.reward, read.episode.env.mass) == (None, 1)
-    with pytest.raises(hr.UsageError, match="wings"):
-        hr.retargeted(read, ["env.wings=2"])
 
 
 def test_a_scripted_expert_acts_in_its_task():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
-from worlds import along, follow, jitted, many
+from worlds import flown, follow, many
 
 from hybrid_rl.envs.analytic import quadcopter_se3 as quad
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
@@ -18,9 +18,7 @@ MOTION = [0, 1, 2, *range(12, 18)]  # entries of p, v and w
 
 def fly(env, decisions, action):
     """EnvState [decisions + 1] under a constant action, from KEY."""
-    first = jitted(env, "reset")(KEY)
-    rest = along(env, first, np.tile(action, (decisions, 1)))
-    return jax.tree.map(lambda a, b: np.concatenate([a[None], b]), first, rest)
+    return flown(env, KEY, np.tile(action, (decisions, 1)))
 
 
 def twisted() -> np.ndarray:

@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 import yaml
-from worlds import make
+from worlds import along, jitted, make
 
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.errors import UsageError
@@ -14,16 +14,10 @@ from hybrid_rl.training.episode import Episode
 FIXED = {"mass": [1.5, 1.5], "friction": [0.5, 0.5], "motors": [0.8, 0.8], "payload": [0.4, 0.4]}
 
 
-def states(episode, count=20):
-    """qpos [count, nq] of an episode by the same actions."""
-
-    def step(state, action):
-        state = episode.step(state, action)
-        return state, state.data.qpos
-
-    actions = jax.random.uniform(jax.random.key(1), (count, episode.spec.act), minval=-1.0)
-    first = jax.jit(episode.reset)(jax.random.key(0))
-    return jax.jit(lambda state: jax.lax.scan(step, state, actions))(first)[1]
+def states(episode):
+    """qpos [20, nq] of an episode by the same actions."""
+    actions = jax.random.uniform(jax.random.key(1), (20, episode.spec.act), minval=-1.0)
+    return along(episode, jitted(episode, "reset")(jax.random.key(0)), actions).data.qpos
 
 
 def test_ranges_of_one_value_are_the_body_with_that_value():

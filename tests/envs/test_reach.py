@@ -34,11 +34,6 @@ ARM = """<mujoco>
 </mujoco>"""
 
 
-@pytest.fixture(scope="module")
-def env():
-    return Reach(robot=ARM, physics="native")
-
-
 @pytest.mark.parametrize(
     ("robot", "site", "tip"),
     [
@@ -102,8 +97,9 @@ def test_a_last_slide_that_moves_the_site_is_part_of_the_arm():
     assert state.metrics["success"] == 1
 
 
-def test_servos_that_move_to_the_angles_of_the_pose_reach_it(env):
+def test_servos_that_move_to_the_angles_of_the_pose_reach_it():
     """And the reward is then 1.5, its largest value, while actions rest."""
+    env = Reach(robot=ARM, physics="native")
     start = jitted(env, "reset")(jax.random.key(1))
     target, data = start.info["target"], mujoco.MjData(mjcf.load(env.scene()))
     goal = np.array([np.arctan2(target[1], target[0]), 0.0])

@@ -3,17 +3,19 @@
 from functools import cache
 
 import jax
-import jax.numpy as jnp
 import mujoco
 import numpy as np
 import pytest
 from scipy.linalg import null_space
 from worlds import placed
 
+from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.envs import sawyer_torque
 from hybrid_rl.envs.experts.tracking import ComputedTorque, JointPD
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.sawyer_torque import SawyerTorque, asset
+from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.rollout import rollout
 from hybrid_rl.types import Params
 
 NEUTRAL = (0, -1.18, 0, 2.18, 0, 0.57, 3.3161)  # [rad], Rethink Robotics' sawyer_robot
@@ -67,19 +69,9 @@ def test_the_rates_of_the_reference_are_its_derivative():
 def _play(kind, payload=0.0, learn=5, decisions=265, **gains):
     """Observations [T, 42] and errors of the tip [T] [m] of a controller, or of no torque."""
     env = SawyerTorque("native", payload=payload, learn=learn)
-    tracker = kind and kind(env, **gains)
-
-    def decide(carry, _):
-        state, memory = carry
-        act = jnp.zeros(7)
-        if tracker is not None:
-            act, memory, _ = tracker.act(Params(), memory, state.obs, None)
-        state = env.step(state, act)
-        return (state, memory), (state.obs, state.metrics["tip_error"])
-
-    first = jax.jit(env.reset)(jax.random.key(0)), tracker and tracker.init(env.spec)
-    go = jax.jit(lambda carry: jax.lax.scan(decide, carry, length=decisions)[1])
-    return [np.asarray(x) for x in go(first)]
+    acting, key = kind(env, **gains) if kind else ConstantController(), jax.random.key(0)
+    path = jax.jit(lambda: rollout(Episode(env), acting, Params(), key, decisions))()
+    return np.asarray(path.obs[1:]), np.asarray(path.metrics["tip_error"][1:])
 
 
 def test_the_reference_of_the_next_decision_comes_true():
@@ -117,11 +109,6 @@ def test_gravity_pulls_the_payload_alone():
     np.testing.assert_array_equal(model.geom_size, plain.geom_size)
 
 
-def _rmse(kind, **fields):
-    """Error of the tip on the first 1.6 s of the path [m]."""
-    return np.sqrt((_play(kind, **fields)[1][5 + BLEND :] ** 2).mean())
-
-
 INTEGRAL = {"frequency": 30.0, "integral": 10.0}
 
 
@@ -138,4 +125,5 @@ INTEGRAL = {"frequency": 30.0, "integral": 10.0}
 )
 def test_controllers_track_the_path(kind, fields, low, high):
     """An unknown payload pulls both from it, and an integral removes most of that."""
-    assert low < _rmse(kind, **fields) < high
+    error = _play(kind, **fields)[1][5 + BLEND :]  # of the tip on the first 1.6 s of the path [m]
+    assert low < np.sqrt((error**2).mean()) < high

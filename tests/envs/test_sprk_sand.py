@@ -5,20 +5,13 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from worlds import along, jitted
+from worlds import flown, jitted
 
 from hybrid_rl.envs.analytic.sprk_sand import DT, Ball, SprkSand
 
 KEY = jax.random.key(3)
 EXACT = SprkSand(learn=30, sensor_noise=0.0)
 NOISY = SprkSand(learn=30)
-
-
-def roll(env, actions):
-    """EnvState [T + 1] from KEY under actions [T, 2]."""
-    first = jitted(env, "reset")(KEY)
-    path = along(env, first, actions)
-    return jax.tree.map(lambda a, b: np.concatenate([a[None], b]), first, path)
 
 
 def test_path_against_an_accurate_integration() -> None:
@@ -33,7 +26,7 @@ def test_path_against_an_accurate_integration() -> None:
         dry = 0.6 * np.tanh(speed / 0.02) / speed if speed else 0.0
         return np.concatenate([v, k * rotation @ c - (1.5 + 3.0 * speed + dry) * v, (a - c) / 0.1])
 
-    path = roll(EXACT, np.tile(a, (60, 1)))
+    path = flown(EXACT, KEY, np.tile(a, (60, 1)))
     start = np.concatenate([path.data.p[0], np.zeros(4)])
     end = solve_ivp(rate, (0, 60 * DT), start, rtol=1e-9, atol=1e-11).y[:, -1]
     np.testing.assert_allclose(np.concatenate([leaf[-1] for leaf in path.data]), end, atol=1e-4)
@@ -43,7 +36,7 @@ def test_path_against_an_accurate_integration() -> None:
 
 def test_the_reference_rests_and_then_follows_the_curve() -> None:
     """Its velocity is the derivative of its position, by central differences of fourth order."""
-    now, later = np.split(roll(EXACT, np.zeros((300, 2))).obs[:, 4:], 2, axis=1)
+    now, later = np.split(flown(EXACT, KEY, np.zeros((300, 2))).obs[:, 4:], 2, axis=1)
     np.testing.assert_array_equal(later[:-1], now[1:])
     np.testing.assert_allclose(now[:30], [[1.62, 0.85, 0, 0]] * 30, atol=1e-6)
     p, v = now[30:, :2], now[30:, 2:]
@@ -59,7 +52,7 @@ def test_equilibrium_is_a_state_at_rest_on_the_reference() -> None:
     """The ball stays there until the reference moves."""
     env = SprkSand(sensor_noise=0.0, start=0.0)
     obs, action = env.equilibrium()
-    path = roll(env, np.tile(action, (5, 1)))
+    path = flown(env, KEY, np.tile(action, (5, 1)))
     np.testing.assert_allclose(path.obs, np.tile(obs, (6, 1)), atol=1e-6)
     np.testing.assert_allclose(path.metrics["tracking_error"], 0, atol=1e-6)
 
@@ -67,7 +60,7 @@ def test_equilibrium_is_a_state_at_rest_on_the_reference() -> None:
 def test_noise_is_that_of_a_camera() -> None:
     """White on the position; the velocity is the difference. The physics is that without noise."""
     actions = np.random.default_rng(0).uniform(-1, 1, (1000, 2))
-    exact, path = roll(EXACT, actions), roll(NOISY, actions)
+    exact, path = flown(EXACT, KEY, actions), flown(NOISY, KEY, actions)
     np.testing.assert_allclose(path.data.p, exact.data.p, atol=1e-6)
     np.testing.assert_allclose(path.reward, exact.reward, atol=1e-5)
     noise = path.obs[:, :2] - path.data.p

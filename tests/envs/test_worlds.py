@@ -201,7 +201,6 @@ BOX = (0.5, 0.5, 0, 0.1, 0.1)  # an object of the contact plane without its roun
 @pytest.mark.parametrize(
     ("task", "given", "line"),
     [
-        ("hopper", {"physics": "warp"}, "physics=warp: must have an NVIDIA GPU"),
         ("halfcheetah", {"motors": [1.0, 1.0]}, r"motors=.*: must be 1 or 6 numbers"),
         ("contact_plane", {"objects": ((*BOX, 0.2),)}, "rounding"),
         ("sprk", {"low": (1.0, 0.0)}, "low="),

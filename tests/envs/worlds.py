@@ -126,6 +126,13 @@ def along(env, state, actions):
     return _scanned(env)(state, jnp.asarray(actions, jnp.float32))
 
 
+def flown(env, key, actions):
+    """EnvState [T + 1] from a reset with `key`, under actions [T, m]."""
+    first = jitted(env, "reset")(key)
+    path = along(env, first, actions)
+    return jax.tree.map(lambda a, b: np.concatenate([a[None], b]), first, path)
+
+
 @cache
 def rollout(env):
     """EnvState [2, 2, DECISIONS] from `start` with `actions`."""

@@ -1,10 +1,11 @@
-"""A robot that counts, and moves in this process."""
+"""A robot that counts, and moves in this process; a controller that counts."""
 
 import time
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.envs.adapters.robot import Robot
@@ -46,6 +47,23 @@ class Counting:
 
     def stop(self) -> None:
         self.stopped += 1
+
+
+@dataclass(frozen=True)
+class Rising:
+    """A controller that acts by the number of its decisions in this episode."""
+
+    first: float
+    more: float
+
+    def init(self, spec):
+        return jnp.full(spec.act, self.first)
+
+    def act(self, params, state, obs, key):
+        return state, state + self.more, {}
+
+    def greedy(self):
+        return self
 
 
 def of(agent, kind, **fields):

@@ -10,7 +10,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from counting import Counting, broken, lost, moved, of
+from counting import Counting, Rising, broken, lost, moved, of
 
 from hybrid_rl.envs.adapters.robot import PENDING
 from hybrid_rl.errors import WorldError
@@ -88,22 +88,8 @@ def test_it_acts_at_the_observation_predicted_for_then(agent, tmp_path):
     assert (sent + 0.006 > 0.004 * lags - 0.002).all()
 
 
-@dataclass(frozen=True)
-class Remembering:
-    """Acts by the number of its decisions in this episode."""
-
-    def init(self, spec):
-        return jnp.zeros(spec.act)
-
-    def act(self, params, state, obs, key):
-        return state, state + 0.05, {}
-
-    def greedy(self):
-        return self
-
-
 def test_an_episode_begins_with_a_controller_that_remembers_nothing(agent, tmp_path):
-    _, rows = moved(replace(agent, controller=Remembering()), tmp_path, Counting)
+    _, rows = moved(replace(agent, controller=Rising(0.0, 0.05)), tmp_path, Counting)
     first = {row["episode"]: float(row["action"][0]) for row in reversed(rows)}
     assert len(first) > 3
     assert max(first.values()) < 0.4  # a missed deadline leaves decisions out

@@ -10,6 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 import small
+from counting import Rising
 from gymnasium.spaces import Dict, Discrete
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 from hosted import Count, counting
@@ -146,19 +147,6 @@ def test_copies_step_as_in_gymnasiums_vector():
         np.testing.assert_array_equal(got.following, obs)
 
 
-class Rising:
-    """u = 0.5, then 1.5, which is beyond the bounds."""
-
-    def init(self, spec: Spec) -> jax.Array:
-        return jnp.full(1, 0.5)
-
-    def act(self, params: Params, state: jax.Array, obs: jax.Array, key: jax.Array) -> tuple:
-        return state, state + 1, {}
-
-    def greedy(self) -> "Rising":
-        return self
-
-
 class Drawn(Count):
     """The lengths of its episodes follow from the seed."""
 
@@ -226,7 +214,7 @@ def test_evaluations_have_environments_and_seeds_of_their_own():
 
 def test_a_trained_policy_acts_in_the_units_of_its_environment():
     """What `step` of the user's loop gets from it, or from its program, is what a run gave it."""
-    episode, modes = Episode(counting(), STEPS), {"full": Rising()}
+    episode, modes = Episode(counting(), STEPS), {"full": Rising(0.5, 1.0)}  # beyond the bounds
     trained = Trained("count", episode, modes, Params(), (0,), 0, ())
     policy, copies = trained.policy(), episode.env.copies([0], STEPS)
     copies.reset()

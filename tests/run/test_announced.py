@@ -5,12 +5,11 @@ import shlex
 
 import numpy as np
 import pytest
-from test_session import SAC
+from test_session import SAC, when
 from tiny import TINY, call_train, rows_of, run
 
 from hybrid_rl.errors import WorldError
 from hybrid_rl.run.logs.records import result_line
-from hybrid_rl.run.session import Session
 from hybrid_rl.settings.words import quoted
 
 
@@ -25,14 +24,12 @@ def test_the_result_is_that_of_the_policy_where_only_it_is_evaluated(tmp_path, c
 def test_after_a_fault_of_the_world_it_says_how_to_go_on(
     monkeypatch, tmp_path, capsys, step, saved
 ):
-    advance, folder = Session._advance, tmp_path / "it's"
+    folder = tmp_path / "it's"
 
-    def broken(self):
-        advance(self)
-        if self.step >= step:
-            raise WorldError("reach.py:3: step: the motor is hot")
+    def broken(session):
+        raise WorldError("reach.py:3: step: the motor is hot")
 
-    monkeypatch.setattr(Session, "_advance", broken)
+    when(monkeypatch, step, broken)
     assert call_train(*TINY, *SAC, f"run_dir={quoted(str(folder))}") == 2
     printed = capsys.readouterr()
     assert printed.err == "hybrid_rl: reach.py:3: step: the motor is hot\n"

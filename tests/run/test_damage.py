@@ -2,19 +2,17 @@
 
 import json
 import re
-import resource
 
-import jax
 import jax.numpy as jnp
 import programs
 import pytest
 from states import flip
-from tiny import TINY, call, call_train, contents, finished, only_line, refusal, summary_of
+from test_session import break_learner
+from tiny import TINY, call, call_train, contents, finished, limited, refusal, summary_of
 
 from hybrid_rl import evaluate, export
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.pendulum import Pendulum
-from hybrid_rl.run import session
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.evaluations import Evaluations
 from hybrid_rl.run.logs import records
@@ -49,13 +47,8 @@ def test_without_a_sound_checkpoint_nothing_is_done(copied, capfd):
 
 def test_a_full_disk_is_named(copied, capfd):
     """Also where the system itself names no file: it refuses any longer than 1,000 bytes."""
-    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, limits[1]))
-    try:
-        assert call_train(f"resume={copied}", "total_steps=700") == 1
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
-    printed = only_line(capfd)
+    with limited(1000):
+        printed = refusal(capfd, f"resume={copied}", "total_steps=700", code=1)
     assert f"File too large: '{copied}/config.yaml'" in printed
     assert checkpoint.steps(copied / "checkpoints") == [500, 600]
     assert not list(copied.glob(".*"))
@@ -75,8 +68,7 @@ def test_a_world_that_breaks_is_named_and_can_be_mended(copied, monkeypatch, cap
         patch.setattr(Pendulum, "step", step)
         patch.setattr(programs, "KEPT", [])
         line = [*TINY, "algo=sac", "checkpoint_every=50", f"run_dir={folder}"]
-        assert call_train(*line) == 1
-    line = only_line(capfd)
+        line = refusal(capfd, *line, code=1)
     assert line.startswith("hybrid_rl: seed 0, step 51: world/reward is not finite")
     assert "; checkpoint 50 is intact: fix what fails and resume it" in line
     assert not summary_of(folder)["finished"]
@@ -89,16 +81,7 @@ def test_a_world_that_breaks_is_named_and_can_be_mended(copied, monkeypatch, cap
 
 def test_a_learner_that_breaks_is_named(copied, monkeypatch, capfd):
     """A parameter that is no number is not saved."""
-    advance = session.Session._advance
-
-    def spoilt(self):
-        advance(self)
-        if self.step == 650:
-            leaves, form = jax.tree.flatten(self.state.learners)
-            leaves = [jnp.full_like(x, jnp.nan) if x.dtype == jnp.float32 else x for x in leaves]
-            self.state = self.state.replace(learners=jax.tree.unflatten(form, leaves))
-
-    monkeypatch.setattr(session.Session, "_advance", spoilt)
+    break_learner(monkeypatch, 0, 650)
     monkeypatch.setattr(records, "infinite", lambda *_: {})
     monkeypatch.setattr(Evaluations, "__call__", lambda *_: [{"eval/return": 0.0}])
     printed = refusal(capfd, f"resume={copied}", "total_steps=700", code=1)

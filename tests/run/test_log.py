@@ -116,17 +116,11 @@ def test_flushed_rows_survive_a_kill(tmp_path):
     assert scalars(tmp_path / "tensorboard") == [(1, "a", 5)]
 
 
-@pytest.fixture
-def now(monkeypatch):
-    """The clock [s] of a display, in a list; its own thread stands still."""
-    now = [100.0]
-    monkeypatch.setattr(time, "monotonic", lambda: now[0])
-    monkeypatch.setattr(Progress, "_beat", lambda self: None)
-    return now
-
-
-def test_plain_lines_come_at_once_and_then_within_ten_seconds(capsys, now):
+def test_plain_lines_come_at_once_and_then_within_ten_seconds(capsys, monkeypatch):
     """With a speed from the step on from which it is representative."""
+    now = [100.0]  # [s]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    monkeypatch.setattr(Progress, "_beat", lambda self: None)  # of its own thread
     with Progress(2000, label="hopper sac", steady=1020) as shown:
         shown.note("compiling ...")
         assert capsys.readouterr().out == "compiling ...\n"

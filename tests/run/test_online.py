@@ -38,6 +38,18 @@ def made(learn="inline", *more):
     return OnlineLearner([*METHOD, *more], obs=2, act=1, learn=learn)
 
 
+@pytest.fixture(scope="module")
+def one(programs):
+    return made()
+
+
+@pytest.fixture
+def learner(one):
+    """One for all mistakes, which it survives."""
+    one.interrupt()
+    return one
+
+
 def drive(learner, decisions, episode=5, first=0):
     """(obs, action) of decisions in a world that counts, with the time limit `episode`."""
     taken = []
@@ -93,9 +105,7 @@ def test_a_robot_that_is_late_is_learned_from_with_what_acted(algo):
 @pytest.mark.parametrize(
     "ends", [OnlineLearner.interrupt, lambda each: each.observe(0.0, [0, 0], terminated=True)]
 )
-def test_an_episode_begins_with_a_controller_that_remembers_nothing(ends):
-    learner = _shared()
-    learner.interrupt()
+def test_an_episode_begins_with_a_controller_that_remembers_nothing(learner, ends):
     learner.act([0, 0])
     learner._decide._acting.control = "a plan"  # sac itself remembers nothing
     ends(learner)
@@ -152,9 +162,7 @@ def observe(*outcome, **more):
         (observe(0.0, [0, 0], executed=[5]), r"executed: entry 0 must lie in \[-1, 1\]"),
     ],
 )
-def test_mistakes_are_one_line(call, line):
-    learner = _shared()
-    learner.interrupt()
+def test_mistakes_are_one_line(learner, call, line):
     with pytest.raises(UsageError, match=line):
         call(learner)
 
@@ -170,9 +178,7 @@ def test_wrong_arguments_are_refused(tmp_path):
         OnlineLearner(["resume=runs/mine"], obs=2, act=1)
 
 
-def test_save_replaces_what_it_wrote_and_no_other_run(tmp_path):
-    learner = _shared()
-    learner.interrupt()
+def test_save_replaces_what_it_wrote_and_no_other_run(learner, tmp_path):
     learner.save(tmp_path / "mine")
     first = learner.decisions
     newer = tmp_path / "mine" / "checkpoints"
@@ -185,25 +191,13 @@ def test_save_replaces_what_it_wrote_and_no_other_run(tmp_path):
     assert not (tmp_path / "checkpoints").exists()
 
 
-def test_a_learner_that_diverged_gives_no_action():
-    learner = _shared()
-    learner.interrupt()
+def test_a_learner_that_diverged_gives_no_action(learner):
     sound = learner._decide.params
     learner._decide.params = jax.tree.map(lambda leaf: np.full_like(leaf, np.nan), sound)
     with pytest.raises(DivergenceError, match="the learner reached NaN"):
         learner.act([0, 0])
     learner._decide.params = sound
     assert np.isfinite(learner.act([0, 0])).all()
-
-
-SHARED = []
-
-
-def _shared():
-    """One learner for all mistakes, which it survives."""
-    if not SHARED:
-        SHARED.append(made())
-    return SHARED[0]
 
 
 def test_a_checkpoint_of_another_run_is_one_line(tmp_path):

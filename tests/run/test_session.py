@@ -1,6 +1,5 @@
 """A run is stopped anywhere, its learners diverge alone, its numbers are what their names say."""
 
-import json
 import shlex
 import signal
 import time
@@ -15,11 +14,11 @@ from hybrid_rl.errors import DivergenceError
 from hybrid_rl.run import schedule, session
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.evaluations import Evaluations
-from hybrid_rl.run.logs import records
+from hybrid_rl.run.folder import read
+from hybrid_rl.run.saved import build_run, restore
 from hybrid_rl.run.schedule import Pace, Schedule, Speed
 from hybrid_rl.run.session import Session
 from hybrid_rl.settings.words import quoted
-from hybrid_rl.training.loop import Loop
 from scripts import interrupt
 
 SAC = ["algo=sac", "num_seeds=2"]
@@ -28,41 +27,34 @@ SAC = ["algo=sac", "num_seeds=2"]
 whole = finished(*SAC)  # a run of two learners that was never stopped
 
 
-@pytest.fixture
-def short(monkeypatch):
-    """Calls of seven rounds at most, so that they end between the marks."""
-    monkeypatch.setattr(Pace, "rounds", lambda self, left: min(left, 7))
-
-
-def stop_at(monkeypatch, step):
-    """A signal comes in the first call that reaches `step`."""
+def when(patch, step, then):
+    """`then` gets the session after the first call that reaches `step`, and after those beyond."""
     advance = Session._advance
 
-    def stopped(self):
+    def advanced(self):
         advance(self)
         if self.step >= step:
-            self.ask(signal.SIGTERM)
+            then(self)
 
-    monkeypatch.setattr(Session, "_advance", stopped)
+    patch.setattr(Session, "_advance", advanced)
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGHUP])
 def test_a_program_that_trains_hears_the_signal_after_the_checkpoint(monkeypatch, tmp_path, number):
     """As though nothing had come between: a script ends, and no loop starts its next run."""
-    folder, advance, heard = tmp_path / "run", Session._advance, []
+    folder, heard = tmp_path / "run", []
 
-    def pressed(self):
-        advance(self)
-        if self.step >= 150 and self.stop is None:
+    def pressed(session):
+        if session.stop is None:
             signal.raise_signal(number)
-            while self.stop is None:
-                time.sleep(0.001)
+        while session.stop is None:
+            time.sleep(0.001)
 
     def handler(*_):
         heard.append(checkpoint.steps(folder / "checkpoints")[-1])
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(Session, "_advance", pressed)
+    when(monkeypatch, 150, pressed)
     before = signal.signal(number, handler)
     try:
         with pytest.raises(KeyboardInterrupt):
@@ -97,29 +89,17 @@ def test_a_call_ends_at_marks_and_where_decisions_change():
     ]
 
 
-def test_sums_in_parts_are_the_sums_as_one():
-    values = np.random.default_rng(0).normal(size=(50, 3)).astype(np.float32)
-    values[3:20, 1], values[:, 2] = np.nan, np.nan
-    whole, got = records.added({}, {"b": values}), {}
-    for cut in np.split(values, [7, 8, 31]):
-        got = records.added(got, {"b": cut, "a": -cut, "episode/done": cut})
-    assert list(got) == ["b", "a"]
-    assert got["b"].tobytes() == whole["b"].tobytes()
-    rows = records.means(got, 3, 50)
-    np.testing.assert_allclose([row["b"] for row in rows[:2]], np.nanmean(values[:, :2], 0), 1e-6)
-    assert rows[2] == {"step": 50, "learner": 2}
-
-
-def test_a_run_stopped_anywhere_goes_on_bit_for_bit(whole, short, tmp_path, capsys):
+def test_a_run_stopped_anywhere_goes_on_bit_for_bit(whole, tmp_path, monkeypatch, capsys):
     """Between marks, before an evaluation is made, and before the last one is.
 
     The name of the folder means something to the shell, to Hydra, to Orbax and to glob.
     """
+    monkeypatch.setattr(Pace, "rounds", lambda self, left: min(left, 7))  # so a call ends there
     folder, line = tmp_path / "it's hidden=[8,8]", []
     begin = [*TINY, *SAC, f"run_dir={quoted(str(folder))}"]
     for step in (123, 300, 600):
         with pytest.MonkeyPatch.context() as patch:
-            stop_at(patch, step)
+            when(patch, step, lambda session: session.ask(signal.SIGTERM))
             assert call_train(*(line or begin)) == 128 + signal.SIGTERM
         printed = capsys.readouterr().out.splitlines()[-1]
         result, line = summary_of(folder), shlex.split(printed)[4:]
@@ -136,34 +116,26 @@ def break_learner(patch, number, step):
     """From `step` on the critic of a learner is no number."""
     advance = Session._advance
 
+    def spoilt(x):
+        return x.at[number].set(jnp.nan) if jnp.issubdtype(x.dtype, jnp.floating) else x
+
     def broken(self):
         if self.step == step:
-            spoil = self.state.learners["policy"]
-            leaves, form = jax.tree.flatten(spoil)
+            learners = self.state.learners
             with jax.debug_nans(False):
-                leaves = [
-                    x.at[number].set(jnp.nan) if jnp.issubdtype(x.dtype, jnp.floating) else x
-                    for x in leaves
-                ]
-            learners = self.state.learners | {"policy": jax.tree.unflatten(form, leaves)}
-            self.state = self.state.replace(learners=learners)
+                policy = jax.tree.map(spoilt, learners["policy"])
+            self.state = self.state.replace(learners=learners | {"policy": policy})
         advance(self)
 
     patch.setattr(Session, "_advance", broken)
 
 
 def finite(folder):
-    """Whether the newest checkpoint is."""
-    step = checkpoint.steps(folder / "checkpoints")[-1]
-    parent = folder / "checkpoints" / str(step)
-    kinds = json.loads((parent / "leaves.json").read_text())
-    like = {
-        name: jax.ShapeDtypeStruct(tuple(kind["shape"]), kind["dtype"])
-        for name, kind in kinds.items()
-        if name.startswith("learners")
-    }
-    result = checkpoint.restore(folder / "checkpoints", like, step)[1]
-    return bool(result) and all(np.isfinite(leaf).all() for leaf in result.values())
+    """Whether the learners of the newest checkpoint are."""
+    step, state, _ = restore(folder, build_run(read(folder, "run")))
+    learners = jax.tree.leaves(state.learners)
+    newest = step == checkpoint.steps(folder / "checkpoints")[-1]
+    return newest and all(np.isfinite(leaf).all() for leaf in learners)
 
 
 def test_one_learner_diverges_and_the_other_goes_on(whole, tmp_path, capfd):
@@ -241,14 +213,3 @@ def test_with_debug_nans_a_run_ends_in_the_call_that_made_them_and_not_before(
     break_learner(monkeypatch, 1, 200)
     with jax.debug_nans(True), pytest.raises(DivergenceError, match="seed 0, step 250: "):
         run(tmp_path / "run", *SAC)
-
-
-def test_a_learner_is_read_back_from_the_loop():
-    """A row of the state is replaced, and nothing else."""
-    made = {"a": jnp.arange(6.0).reshape(3, 2), "key": jax.random.split(jax.random.key(0), 3)}
-    loop = Loop(agent=None, seeds=(0, 1, 2), stride=1)
-    wanted = np.array([[0, 1], [9, 9], [4, 5]])
-    key = jax.random.key(7)
-    got = loop.with_learner(loop.on_devices(made), 1, {"a": jnp.full(2, 9.0), "key": key})
-    np.testing.assert_array_equal(got["a"], wanted)
-    assert jax.random.key_data(got["key"])[1].tolist() == jax.random.key_data(key).tolist()

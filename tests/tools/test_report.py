@@ -7,7 +7,7 @@ from functools import partial
 from html.parser import HTMLParser
 
 import pytest
-from tiny import call, refusal
+from tiny import call, refusal, write_run
 
 import hybrid_rl as hr
 from hybrid_rl.cli import command
@@ -23,16 +23,13 @@ class Page(HTMLParser):
 
     def __init__(self, text):
         super().__init__()
-        self.open, self.attributes, self.ids, self.texts = [], [], [], []
+        self.open, self.attributes, self.texts = [], [], []
         self.feed(text)
 
     def handle_starttag(self, tag, attributes):
         self.attributes += [(tag, name, value) for name, value in attributes]
         if tag not in VOID:
             self.open.append(tag)
-
-    def handle_startendtag(self, tag, attributes):
-        self.attributes += [(tag, name, value) for name, value in attributes]
 
     def handle_endtag(self, tag):
         if tag not in VOID:
@@ -45,22 +42,14 @@ class Page(HTMLParser):
         return [text for name, text in self.texts if name == tag and text]
 
 
-def write(folder, algo="sac", rate=0.1, seeds=(0, 1), last="planner/handed_over", **summary):
+def write(folder, algo="sac", rate=0.1, last="planner/handed_over", **summary):
     """A run folder."""
-    folder.mkdir(parents=True)
-    rows = [
-        {"step": step, "seed": seed, "wall_s": step / 10, name: 0.01 * step + seed}
-        for step in (1000, 2000, 3000)
-        for seed in seeds
-        for name in ("eval/return", last)
-    ]
-    (folder / "metrics.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
-    (folder / "config.yaml").write_text(CONFIG.format(algo=algo, rate=rate))
-    values = {"task": "hopper", "algo": algo, "seeds": list(seeds), "total_steps": 3000}
+    line = {step: [0.01 * step, 0.01 * step + 1] for step in (1000, 2000, 3000)}
+    values = {"task": "hopper", "algo": algo, "seeds": [0, 1], "total_steps": 3000}
     values |= {"finished": True, "final_eval": [30.0, 31.0], "wall_s": 61.2}
     values |= {"git_commit": "0123456789abcdef", "versions": {"jax": "0.10.2"}} | summary
-    (folder / "summary.json").write_text(json.dumps(values))
-    return folder
+    settings = CONFIG.format(algo=algo, rate=rate)
+    return write_run(folder, settings, {"eval/return": line, last: line}, **values)
 
 
 @pytest.fixture

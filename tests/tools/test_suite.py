@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import yaml
-from tiny import call, refusal
+from tiny import call, refusal, write_run
 
 from hybrid_rl.cli import command
 from hybrid_rl.settings.build import compose_raw
@@ -16,19 +16,6 @@ from hybrid_rl.tools.suite import __main__ as suite
 
 MAIN = partial(command.run, suite.main)
 TASKS = {"one": {"train": "task=pendulum", "random": -10}, "two": {"train": "task=cartpole"}}
-
-
-def written(folder, returns, finished):
-    """A run with evaluations of two seeds after 10 and 20 decisions."""
-    folder.mkdir(parents=True)
-    rows = [
-        {"step": n, "seed": s, "wall_s": n, "eval/return": r}
-        for n, each in zip((10, 20), returns, strict=True)
-        for s, r in enumerate(each)
-    ]
-    (folder / "metrics.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
-    (folder / "config.yaml").write_text("task: pendulum\nalgo: sac\n")
-    (folder / "summary.json").write_text(json.dumps({"finished": finished}))
 
 
 def test_it_begins_continues_and_leaves_out_and_writes_what_there_is(tmp_path, monkeypatch, capfd):
@@ -45,8 +32,9 @@ def test_it_begins_continues_and_leaves_out_and_writes_what_there_is(tmp_path, m
     assert "no run of these tasks" in refusal(capfd, *given, of=suite.main)
     first = "task=pendulum num_envs=2 algo=sac total_steps=20 eval_every=1 checkpoint_every=2"
     assert lines[0] == [*first.split(), "seed=7", "num_seeds=2", f"run_dir={out / 'one'}"]
-    written(out / "one", [(0, 20), (30, 50)], finished=True)
-    written(out / "two", [(5, 5), (10, 20)], finished=False)
+    for name, first, last in (("one", (0, 20), (30, 50)), ("two", (5, 5), (10, 20))):
+        returns = {"eval/return": {10: first, 20: last}}
+        write_run(out / name, "task: pendulum\nalgo: sac\n", returns, finished=name == "one")
     assert call(MAIN, *given, f"peers={peers}") == 0
     assert lines[2:] == [[f"resume={out / 'two'}"]]
     rows = [line.split(" | ") for line in out.with_suffix(".md").read_text().splitlines()]

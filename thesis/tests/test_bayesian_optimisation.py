@@ -12,17 +12,12 @@ SHORT = ["experiment=thesis/fig_6_4", "algo=lqr_bayesopt", "num_seeds=2"]
 SHORT += ["episode.steps=80", "total_steps=80", "eval_every=80", "checkpoint_every=80"]
 
 
-def curve(each, notes=()) -> Curve:
-    """Trials [S, G] as a curve."""
-    seeds, x = tuple(range(len(each))), np.arange(10.0, 10.0 + each.shape[1])
-    runs = tuple(map(str, seeds))
-    return Curve("t", "m", "a", seeds, runs, x, each, each[0], each[0], each[0], tuple(notes))
-
-
 def test_measurements_until_95_percent_by_hand() -> None:
     """The first that is above it, and none if none is."""
     each = np.array([[0.1, 0.96, 0.97, 1.0], [0.2, 0.3, 0.3, 0.95]])
-    numbers = bayesian_optimisation.reported(curve(each), None)
+    x = np.arange(10.0, 14.0)
+    curve = Curve("t", "m", "a", (0, 1), ("0", "1"), x, each, each[0], each[0], each[0], ())
+    numbers = bayesian_optimisation.reported(curve, None)
     assert numbers["measurements_to_95_percent"] == [2, None]
     assert numbers["median_best_after"] == {4: 0.975}
 

@@ -70,15 +70,12 @@ def test_products_are_counted_by_loops_and_the_costlier_branch():
 @pytest.mark.parametrize("implementation", ["native", "mjx"])
 def test_a_bare_loop_steps_the_model_of_our_world(implementation, monkeypatch):
     """The same compiled model: solver, iterations, integrator and time step are equal."""
-    stepped, load, template = [], mjcf.load, mjx_warp.template
+    home, name = (mjcf, "load") if implementation == "native" else (mjx_warp, "template")
+    stepped, make = [], getattr(home, name)
 
-    def loaded(asset):
-        stepped.append(id(load(asset)))
-        return load(asset)
-
-    def made(asset, implementation, worlds=1):
-        result = template(asset, implementation, worlds)
-        stepped.append(id(result[0]))
+    def made(*given):
+        result = make(*given)
+        stepped.append(id(result if home is mjcf else result[0]))
         return result
 
     def traced(name, run, *given, work):
@@ -87,10 +84,7 @@ def test_a_bare_loop_steps_the_model_of_our_world(implementation, monkeypatch):
 
     for module in (ours, others):
         monkeypatch.setattr(module, "compile_contestant", traced)
-    if implementation == "native":
-        monkeypatch.setattr(mjcf, "load", loaded)
-    else:
-        monkeypatch.setattr(mjx_warp, "template", made)
+    monkeypatch.setattr(home, name, made)
     own = ours.worlds("cartpole", implementation, 2, 1)
     ours_stepped = set(stepped)
     stepped.clear()

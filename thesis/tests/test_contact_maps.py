@@ -18,16 +18,12 @@ WORLD = ContactPlane(objects=((0.3, 0.5, 0, 0.1, 0.1, 0.1), (0.75, 0.5, 0, 0.1, 
 NO_RUN: Any = None
 
 
-def trials(s: np.ndarray, y: np.ndarray) -> Any:
-    """Trials with these positions [S, T, 2] and measurements [S, T]."""
-    return SimpleNamespace(world=WORLD, s=s, y=y, touch=y)
-
-
 def test_measures_of_a_path_around_one_of_two_discs() -> None:
     """All of its outline, none of the other's; and a map that is the truth, or half of it."""
     angle = np.linspace(0, 2 * np.pi, 80, endpoint=False)
     s = np.array([0.3, 0.5]) + 0.13 * np.stack([np.cos(angle), np.sin(angle)], -1)
-    run, marks = trials(s[None].astype(np.float32), np.ones((1, 80))), [80]
+    marks, felt = [80], np.ones((1, 80))
+    run: Any = SimpleNamespace(world=WORLD, s=s[None].astype(np.float32), y=felt, touch=felt)
     truth = -contacts.distances(WORLD, contacts.grid(WORLD)) + WORLD.radius
     left = np.where(np.arange(contacts.GRID)[:, None] < 64, truth, -1.0)
     ring = np.where(np.abs(truth) < 0.02, 1.0, -1.0)  # hollow: filled for `iou`

@@ -23,11 +23,6 @@ A = np.array([[1.0, 0.1], [-0.1, 1.1]])  # an unstable spiral
 B = np.array([[0.0], [0.2]])
 
 
-def linear_world() -> Any:
-    """x' = A x + B u with the origin as its equilibrium."""
-    return SimpleNamespace(equilibrium=lambda: (jnp.zeros(2), jnp.zeros(1)))
-
-
 def test_three_regulators_are_one_on_a_linear_world() -> None:
     """Koopman, known and regression have the gain of SciPy's Riccati solution."""
     spec, rng = Spec(2, 1, 0.1), np.random.default_rng(0)
@@ -38,7 +33,8 @@ def test_three_regulators_are_one_on_a_linear_world() -> None:
     x, u, after = (jnp.asarray(each, jnp.float32) for each in (x, u, after))
     params = oscillator.fit(learner, spec, x, u, after, jax.random.key(0))
     np.testing.assert_allclose(params["K"], np.hstack([A, B]), atol=1e-5)
-    solver = RegulatorLearner(model, Linear(), linear_world(), (1.0, 2.0), (0.5,), 256)
+    world: Any = SimpleNamespace(equilibrium=lambda: (jnp.zeros(2), jnp.zeros(1)))
+    solver = RegulatorLearner(model, Linear(), world, (1.0, 2.0), (0.5,), 256)
     F = oscillator.gains(solver, (A, B), spec, params)
     P = solve_discrete_are(A, B, np.diag([1.0, 2.0]), np.diag([0.5]))
     right = np.linalg.solve(0.5 + B.T @ P @ B, B.T @ P @ A)[0]

@@ -1,12 +1,13 @@
 """The study of Koopman operators: falls, tracking and embeddings."""
 
-import json
 import shutil
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from studied import code, drawn, trained
+from tiny import write_run
 
 from hybrid_rl.analysis import drawing
 from hybrid_rl.analysis.results import RunFolder
@@ -89,12 +90,7 @@ def test_log_det_of_the_information_by_hand() -> None:
 
 def test_logged_twist_holds_between_two_rows(tmp_path) -> None:
     """Each row is the mean of the decisions before it."""
-    rows = [
-        {"step": step, "seed": seed, "wall_s": 0, "world/twist": 10 * seed + step}
-        for step in (2, 4)
-        for seed in (0, 1)
-    ]
-    (tmp_path / "metrics.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
+    write_run(tmp_path, "", {"world/twist": {2: [2, 12], 4: [4, 14]}})
     right = [[2, 2, 4, 4], [12, 12, 14, 14]]
     np.testing.assert_array_equal(falls.logged(RunFolder(tmp_path), (0, 1), 4), right)
 
@@ -139,16 +135,11 @@ def test_rmse_of_a_late_sine_in_closed_form() -> None:
     np.testing.assert_allclose(noisy, right, rtol=0.05)
 
 
-def write_run(folder, task: str, success: np.ndarray) -> None:
-    """A run with evaluations of success [G, S], every 200 decisions."""
-    folder.mkdir(parents=True)
-    (folder / "config.yaml").write_text(f"task: {task}\nalgo: k\neval_every: 200\n")
-    rows = [
-        {"step": 200 * (i + 1), "seed": seed, "wall_s": 0, "eval/policy_success": value}
-        for i, each in enumerate(success.tolist())
-        for seed, value in enumerate(each)
-    ]
-    (folder / "metrics.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
+def evaluated(folder: Path, task: str, *success: list[float]) -> None:
+    """A run with evaluations of success, those of all seeds every 200 decisions."""
+    rows = {200 * (i + 1): each for i, each in enumerate(success)}
+    settings = f"task: {task}\nalgo: k\neval_every: 200\n"
+    write_run(folder, settings, {"eval/policy_success": rows})
 
 
 def test_distances_of_arms_by_hand(tmp_path, monkeypatch) -> None:
@@ -157,7 +148,7 @@ def test_distances_of_arms_by_hand(tmp_path, monkeypatch) -> None:
     obs[0, 1] = 1, 9, 2, 9, 4, 6  # (1, 2) to (4, 6)
     made = SimpleNamespace(truncated=np.array([[0, 1, 0, 1]]), next_obs=obs)
     monkeypatch.setattr(embeddings, "read", lambda *_: SimpleNamespace(made=made))
-    write_run(tmp_path / "gain_32", "two_link", np.array([[0.0], [1.0]]))
+    evaluated(tmp_path / "gain_32", "two_link", [0.0], [1.0])
     _, numbers = koopman.figure("embedding", f"{tmp_path}/gain_32")
     one = numbers["two_link"]["gain_32"]
     assert one["distance"][0] == [5, 0]
@@ -206,8 +197,8 @@ def test_tracks_become_numbers_and_a_picture(tmp_path, monkeypatch) -> None:
 
 def test_carts_are_stabilised_when_all_episodes_are_whole(tmp_path) -> None:
     """Trials after 1, 3 and 3 iterations, and one never."""
-    success = np.array([[1, 0, 0.8, 0], [0, 0, 0.8, 0], [1, 1, 1, 0.8]])
-    write_run(tmp_path / "noise_32", "cart_pendulum", success)
+    success = [1, 0, 0.8, 0], [0, 0, 0.8, 0], [1, 1, 1, 0.8]
+    evaluated(tmp_path / "noise_32", "cart_pendulum", *success)
     given = ("view=embedding", f"runs={tmp_path}/*_*")
     numbers = drawn(tmp_path / "f.png", "koopman", *given)["cart_pendulum"]["noise_32"]
     assert numbers["iterations_of_trials"] == [1, 3, 3, None]

@@ -64,18 +64,14 @@ def test_the_wheel_holds_the_package_and_its_entry_for_hydra(wheel):
     plugins = [name for name in names if name.startswith("hydra_plugins/")]
     assert plugins == ["hydra_plugins/hybrid_rl_sweeper.py"]
     rest = {name.split("/")[0] for name in set(names) - set(plugins)}
-    assert rest == {"hybrid_rl", f"{dist_of(wheel)}.dist-info"}
+    name, version, *_ = wheel.name.split("-")
+    assert rest == {"hybrid_rl", f"{name}-{version}.dist-info"}
     wanted = ["py.typed", "types.py", "envs/mujoco/physics.py", "conf/train.yaml"]
     assert not {f"hybrid_rl/{name}" for name in wanted} - set(names)
     sources = [*ROOT.glob("envs/**/*.*"), *ROOT.glob("conf/**/*.yaml"), RECORDED]
     for source in sources:
         assert "__pycache__" in source.parts or f"hybrid_rl/{source.relative_to(ROOT)}" in names
     assert wheel.stat().st_size < 6e6  # [bytes], most of them in policies and demonstrations/
-
-
-def dist_of(wheel):
-    """NAME-VERSION of a wheel's file name."""
-    return "-".join(wheel.name.split("-")[:2])
 
 
 def test_the_demonstrations_are_found_from_any_folder(python, tmp_path):

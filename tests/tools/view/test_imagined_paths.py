@@ -6,13 +6,13 @@ Positions along imagined observations; another goal, who may act, a robot that h
 from dataclasses import replace
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
 from chromium import until
 from test_view import BLANK, player
 from viser import ViserServer
 
+from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.ant import Ant
 from hybrid_rl.envs.cartpole import Cartpole
@@ -29,6 +29,8 @@ from hybrid_rl.tools.view.player import Choice
 from hybrid_rl.tools.view.scene import Scene
 from hybrid_rl.tools.view.subject import Source
 from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.rollout import rollout
+from hybrid_rl.types import Params
 
 
 @pytest.mark.parametrize(
@@ -49,14 +51,10 @@ def test_positions_follow_from_observations(env, fits):
         assert read is None
         return
 
-    @jax.jit
-    def path(key):
-        first, action = episode.reset(key), 0.3 * jnp.ones(env.spec.act)
-        _, states = jax.lax.scan(lambda s, _: (episode.step(s, action),) * 2, first, length=20)
-        return first, jnp.concatenate([first.obs[None], states.obs]), jax.vmap(env.pose)(states)
-
-    first, obs, poses = path(jax.random.key(3))
-    apart = np.asarray(read(first, obs))[1:] - poses
+    still, key = ConstantController(0.3), jax.random.key(3)
+    path = jax.jit(lambda: rollout(episode, still, Params(), key, 20))()
+    first = jax.tree.map(lambda leaf: leaf[0], path)
+    apart = np.asarray(read(first, path.obs) - jax.jit(jax.vmap(env.pose))(path))[1:]
     assert np.abs((apart + np.pi) % (2 * np.pi) - np.pi).max() < fits  # angles may turn round
 
 
