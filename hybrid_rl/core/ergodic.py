@@ -56,6 +56,12 @@ def divergence(points: Points, log_q: Array, volume: float) -> Array:
     return jnp.sum(p * (log_p + jnp.log(count / volume) - log_q))
 
 
+def mean_distance(points: Points, x: Array, variance: Array) -> Array:
+    """1/2 mean_t sum_i p_i |s_i - x_t|^2 in units of the variance [v], for x [M, v]."""
+    apart = (points.s[:, None] - x[None]) ** 2 / variance[None, None]
+    return 0.5 * jnp.mean(jnp.exp(points.log_p) @ jnp.sum(apart, -1))
+
+
 def cosines(x: Array, low: tuple[float, ...], high: tuple[float, ...], modes: int) -> Array:
     """F_k(x) [M, K^v] at x [M, v]."""
     out = jnp.ones((len(x), 1))

@@ -105,8 +105,7 @@ class JensenErgodic(KLErgodic):
 
         def value(path: Path) -> Array:
             x = self.domain.of(path.x)
-            apart = (points.s[:, None] - x[None]) ** 2 / self._variance[None, None]
-            near = -0.5 * jnp.mean(jnp.exp(points.log_p) @ jnp.sum(apart, -1))
+            near = -ergodic.mean_distance(points, x, self._variance)
             return near - self.barrier * self.domain.outside(x)
 
         return value
