@@ -4,6 +4,7 @@ A call takes a few seconds at most, so that a signal is heard between two calls.
 """
 
 from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -38,13 +39,19 @@ class Evaluations:
     def __init__(
         self, loop: Loop, controllers: Mapping[str, Controller], episodes: int, params: Params
     ) -> None:
-        """Compile all of them; params: [S, ...]."""
+        """Compile all of them, beside what the caller compiles; params: [S, ...]."""
         keys = self.keys = jnp.stack([evaluation_keys(seed, episodes) for seed in loop.seeds])
         episode = loop.agent.episode
         self._evaluators = {
             mode: evaluator_of(episode)(episode, controller, params, keys, loop, mode)
             for mode, controller in controllers.items()
         }
+
+    def wait(self) -> None:
+        """Return when all are compiled."""
+        for each in self._evaluators.values():
+            if isinstance(each, Evaluator):
+                each.program.result()
 
     def __call__(self, params: Params, cut: Callable[[], bool]) -> list[dict[str, float]] | None:
         """For each learner the mean of every outcome; None once `cut` is true."""
@@ -60,8 +67,8 @@ class Evaluations:
 class Evaluator:
     """Episodes of every learner under `controller`, in calls of a few seconds at most.
 
-    It compiles when it is made. params: [S, ...]; keys: [S, N], one per episode; loop: whose
-    devices and numbers it has, None for one device; mode: of the controller.
+    It compiles in a thread when it is made. params: [S, ...]; keys: [S, N], one per episode; loop:
+    whose devices and numbers it has, None for one device; mode: of the controller.
     """
 
     def __init__(
@@ -90,7 +97,9 @@ class Evaluator:
         given = self.numbers, params, self._begin(self.numbers, keys), jnp.int32(0)
         more = jax.vmap(partial(one, advance), (0, 0, 0, None))
         more = program(more, (SEEDS, SEEDS, SEEDS, REPLICATED), donate_argnums=2)
-        self._advance = compile_lowered(more.lower(*given))
+        beside = ThreadPoolExecutor(1)
+        self.program = beside.submit(compile_lowered, more.lower(*given))
+        beside.shutdown(wait=False)
 
     def __call__(
         self, params: Params, keys: Array, cut: Callable[[int], bool | None]
@@ -100,12 +109,13 @@ class Evaluator:
         cut: is called with the decisions made, between calls of a few seconds at most.
         """
         carry, pace, made = self._begin(self.numbers, keys), Pace(), 0
+        call = self.program.result()
         while not np.asarray(carry[0].done).all():
             if cut(made):
                 return None
             rounds, began = pace.rounds(self.steps), perf_counter()
             given = self.numbers, params, carry, jnp.int32(rounds)
-            carry = jax.block_until_ready(self._advance(*given))
+            carry = jax.block_until_ready(call(*given))
             pace.took(rounds, perf_counter() - began)
             made += rounds
         return {name: np.asarray(value) for name, value in scores(carry[0]).items()}

@@ -7,7 +7,6 @@ uninterrupted one. A learner that reaches NaN or infinity ends; the others of it
 """
 
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from time import monotonic, perf_counter
 from typing import Any
@@ -106,12 +105,11 @@ class Session:
 
             began = perf_counter()
             modes = {mode: self.controllers[mode] for mode in self.schedule.eval_modes}
-            with ThreadPoolExecutor(1) as beside:  # one program alone leaves cores idle
-                program = beside.submit(self.loop.compile_trace, self.loop.trace(self.state))
-                params, episodes = self.loop.params(self.state), self.schedule.eval_episodes
-                self.evaluations = Evaluations(self.loop, modes, episodes, params)
-                self.program = program.result()
+            params = self.loop.params(self.state)
+            self.evaluations = Evaluations(self.loop, modes, self.schedule.eval_episodes, params)
+            self.program = self.loop.compile(self.state)
             memory.check(self.loop, self.program)
+            self.evaluations.wait()
             self.compile_s = perf_counter() - began
         self.progress.note(f"compiled in {self.compile_s:.1f} s")
 

@@ -30,6 +30,7 @@ from hybrid_rl.settings.build import Run
 from hybrid_rl.settings.groups import search_path
 from hybrid_rl.settings.words import name
 from hybrid_rl.training.agent import Agent, AgentState
+from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import forgotten
 
 OWN = ("random_steps", "pretrain", "run_dir", "freeze", "resume", "run")
@@ -169,11 +170,15 @@ def _memory(
     if not then.checkpoint_replay:
         return None, "checkpoints of that run hold none"
     same = _flat(then, "reward") == _flat(config, "reward")
-    episode = agent.episode  # do rewards follow from the decisions in a memory?
-    exact = not episode.late and not episode.action_noise and episode.sensor_noise == 0.0
-    if not same and not (exact and episode.relabels):
+    if not same and not _follows(agent.episode):
         return None, "reward differs"
     return read()[1].memory, "" if same else RELABELLED
+
+
+def _follows(episode: Episode) -> bool:
+    """True if the rewards of the episodes follow from the decisions in a memory."""
+    exact = not episode.late and not episode.action_noise and episode.sensor_noise == 0.0
+    return exact and episode.relabels
 
 
 def _rewritten(agent: Agent, memory: Any, relabelled: bool) -> Any:

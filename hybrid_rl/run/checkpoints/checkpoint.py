@@ -86,7 +86,12 @@ def save(folder: Path, step: int, state: PyTree, meta: dict, keep: int = KEEP) -
         if not isinstance(problem, Exception):  # Ctrl-C and the like
             raise
         raise CheckpointError(line) from problem
-    _prune(folder, step, keep)
+    known = steps(folder)
+    sound = [s for s in known if s <= step and not verify(folder / str(s), False)]
+    for old in set(known) - set(sound[-keep:]):  # those that the new one replaces
+        with contextlib.suppress(OSError):
+            (folder / str(old)).rename(_hidden(folder, f"{old}.pruned"))
+    _sweep(folder)
     return path
 
 
@@ -106,7 +111,13 @@ def restore(
         for candidate in sorted(wanted & checkpoints.keys(), reverse=True):
             path = checkpoints[candidate]
             before = _identity(path)
-            read, flaw = _attempt(path, like)
+            read, flaw = None, verify(path)
+            try:
+                read = leaves.read(path, like) if flaw is None else None
+            except CheckpointError:
+                raise
+            except (OSError, ValueError) as problem:  # TensorStore raises ValueError
+                flaw = " ".join(str(problem).split())
             if before is None or _identity(path) != before:
                 break  # deleted or replaced while it was read: begin again
             if read is not None:
@@ -127,19 +138,6 @@ def _identity(path: Path) -> tuple[int, int, int] | None:
     return status.st_dev, status.st_ino, status.st_mtime_ns
 
 
-def _attempt(path: Path, like: Like) -> tuple[tuple[PyTree, dict] | None, str]:
-    """State and meta of the checkpoint at `path`, or None and why it has none."""
-    flaw = verify(path)
-    if flaw is not None:
-        return None, flaw
-    try:
-        return leaves.read(path, like), ""
-    except CheckpointError:
-        raise
-    except (OSError, ValueError) as problem:  # TensorStore raises ValueError
-        return None, " ".join(str(problem).split())
-
-
 def _sweep(folder: Path) -> None:
     """Delete what belongs to no checkpoint; what cannot be deleted stays."""
     for path in folder.glob(".*.tmp"):
@@ -158,16 +156,6 @@ def _rename(draft: Path, path: Path) -> Path:
     draft.rename(path)
     sync(path.parent)
     return path
-
-
-def _prune(folder: Path, newest: int, keep: int) -> None:
-    """Delete the checkpoints that the new one replaces."""
-    known = steps(folder)
-    sound = [s for s in known if s <= newest and not verify(folder / str(s), False)]
-    for step in set(known) - set(sound[-keep:]):
-        with contextlib.suppress(OSError):
-            (folder / str(step)).rename(_hidden(folder, f"{step}.pruned"))
-    _sweep(folder)
 
 
 def _refusal(folder: Path, step: int, problem: BaseException) -> str:
