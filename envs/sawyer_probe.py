@@ -137,10 +137,7 @@ class SawyerProbe:
     ) -> Array:
         """Joint velocities [7] [rad/s] that move the tip by `velocity` [2] [m/s]."""
         home, leaning = TIP.constant_pose(HOME)
-        axis = rotate(jnp.asarray(leaning), jnp.array([0.0, 0.0, 1.0]))
-        swing = jnp.stack([1 - axis[2], -axis[1], axis[0], jnp.zeros(())])  # axis x down
-        upright = quat_multiply(swing / jnp.linalg.norm(swing), jnp.asarray(leaning))
-        turn = rotate_towards(rotation, upright, self.hold)  # the rod points down
+        turn = rotate_towards(rotation, _upright(jnp.asarray(leaning)), self.hold)
         rise = self.hold * (jnp.asarray(home[2:]) - tip[2:])
         back = self.posture * (jnp.asarray(HOME, jnp.float32) - qpos)
         twist = jnp.concatenate([velocity, rise, turn])
@@ -174,3 +171,10 @@ class SawyerProbe:
     def pose(self, state: EnvState) -> Array:
         """Joint positions qpos [7] for rendering, at which the tip is where it was observed."""
         return self._reached(state.obs[:2], state.data.qpos)
+
+
+def _upright(rotation: Array) -> Array:
+    """The rotation [4] of the tip next to `rotation` [4] in which the rod points down."""
+    axis = rotate(rotation, jnp.array([0.0, 0.0, 1.0]))
+    swing = jnp.stack([1 - axis[2], -axis[1], axis[0], jnp.zeros(())])  # axis x down
+    return quat_multiply(swing / jnp.linalg.norm(swing), rotation)

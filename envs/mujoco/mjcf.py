@@ -43,7 +43,7 @@ def path(asset: str) -> Path:
 @cache
 def text(asset: str) -> str:
     """The MJCF text of `asset` with its includes expanded."""
-    plain = asset if asset.lstrip().startswith("<") else path(asset).read_text(encoding="utf-8")
+    plain = asset if _is_text(asset) else path(asset).read_text(encoding="utf-8")
     if "<include" not in plain:
         return plain
     spec = mujoco.MjSpec.from_file(str(path(asset)))
@@ -80,7 +80,7 @@ def spec(asset: str) -> mujoco.MjSpec:
     """A new description of `asset`, which may be modified; without changes of the whole model."""
     file, values = _split(asset)
     try:
-        if file.lstrip().startswith("<"):  # MJCF text
+        if _is_text(file):
             result = mujoco.MjSpec.from_string(file)
         else:
             result = mujoco.MjSpec.from_file(str(path(file)))
@@ -91,6 +91,10 @@ def spec(asset: str) -> mujoco.MjSpec:
         if not _whole(key):
             _set(result, key, value)
     return result
+
+
+def _is_text(asset: str) -> bool:
+    return asset.lstrip().startswith("<")
 
 
 def _split(asset: str) -> tuple[str, dict[str, float]]:

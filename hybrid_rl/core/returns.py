@@ -86,7 +86,7 @@ def reached(paths: Imagined) -> Array:
 
 
 def quantities(part: Any, *names: str) -> dict[str, Array]:
-    """Those of the `world` of a reward or a constraint; FieldError if it lacks one of the names."""
+    """All quantities of the `world` of a reward or a constraint; FieldError if it lacks a name."""
     known = part.world.quantities(jnp.zeros(part.world.spec.obs))
     if missing := [name for name in names if name not in known]:
         raise FieldError(part, "world", f"has no {missing[0]}, only {', '.join(known)}")

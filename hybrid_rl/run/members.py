@@ -62,7 +62,8 @@ def expand_sweep(config: DictConfig, texts: Sequence[str]) -> list[Member]:
         numbers = values if isinstance(values, list) else []
         finite = all(type(x) in (int, float) and isfinite(x) for x in numbers)
         if not numbers or not finite or len({*numbers}) < len(numbers):
-            raise UsageError(f"sweep.{key}={values}: must be a list of different numbers")
+            line = "must be a list of different numbers, such as [0.99,0.995]"
+            raise UsageError(f"sweep.{key}={values}: {line}")
     if any(len(lists.get(f"episode.{key}", ())) > 1 for key in ("delay", "jitter")):
         times = ("delay", "jitter", "lag", "longest")  # each in episodes ready for all
         each = [lists.get(f"episode.{key}", [config.episode[key]]) for key in times]

@@ -135,7 +135,7 @@ def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
     try:
         values: dict[str, Any] = plain(config, resolve=True)
     except OmegaConfBaseException as error:
-        lacks = re.findall("key '(?:model_)?(.*)' not", str(error))
+        lacks = re.findall("key '(?:model_)?(.*)' not", str(error))  # model_objective: an objective
         asks = [text for text in overrides if name(text) == str(error.full_key).split(".")[0]]
         lines = [f"{text}: {config.algo} has no {key}" for text in asks for key in lacks]
         raise UsageError([explain(error), *lines][-1]) from error

@@ -220,3 +220,16 @@ def test_limits_that_lie_close_together_have_more_digits():
 
 def test_a_constant_is_a_line_at_the_bottom():
     assert (columns(in_characters([1, 2], [5.0, 5.0], "", "")) == 0).all()
+
+
+def test_several_metrics_are_rows_without_a_blank():
+    """One column per task; if a task lacks a metric, no panel is empty."""
+    metrics = ("train/return", "planner/mode_insertion_gradient")
+    drawn = [curve(task, metric=metric) for metric in metrics for task in ("ant", "hopper")]
+    axes = plot(drawn).axes
+    assert [panel.get_title() for panel in axes] == ["ant", "hopper", "ant", "hopper"]
+    assert axes[3].get_ylabel() == "Mode insertion gradient"
+    assert [panel.get_subplotspec().rowspan.start for panel in axes] == [0, 0, 1, 1]
+    axes = plot(drawn[:3]).axes
+    assert len(axes) == axes[0].get_subplotspec().get_gridspec().ncols == 3
+    assert all(panel.lines for panel in axes)

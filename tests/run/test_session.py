@@ -15,6 +15,7 @@ from hybrid_rl.run import schedule, session
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.evaluations import Evaluations
 from hybrid_rl.run.folder import read
+from hybrid_rl.run.logs import records
 from hybrid_rl.run.saved import build_run, restore
 from hybrid_rl.run.schedule import Pace, Schedule, Speed
 from hybrid_rl.run.session import Session
@@ -87,6 +88,19 @@ def test_a_call_ends_at_marks_and_where_decisions_change():
     assert [plan.row_due(step, 7) for step in (301, 308, 504, 994, 1001)] == [
         *(True, False, True, False, True),
     ]
+
+
+def test_sums_in_parts_are_the_sums_as_one():
+    values = np.random.default_rng(0).normal(size=(50, 3)).astype(np.float32)
+    values[3:20, 1], values[:, 2] = np.nan, np.nan
+    whole, got = records.added({}, {"b": values}), {}
+    for cut in np.split(values, [7, 8, 31]):
+        got = records.added(got, {"b": cut, "a": -cut, "episode/done": cut})
+    assert list(got) == ["b", "a"]
+    assert got["b"].tobytes() == whole["b"].tobytes()
+    rows = records.means(got, 3, 50)
+    np.testing.assert_allclose([row["b"] for row in rows[:2]], np.nanmean(values[:, :2], 0), 1e-6)
+    assert rows[2] == {"step": 50, "learner": 2}
 
 
 def test_a_run_stopped_anywhere_goes_on_bit_for_bit(whole, tmp_path, monkeypatch, capsys):
