@@ -86,18 +86,30 @@ def clock(alone: Sequence[tuple[Learner, Learner]]) -> Clock:
     return seconds
 
 
-def members(folder: Path) -> list[Learner]:
-    """The learners of a method, over seconds since the command."""
+def members(folder: Path) -> list[tuple[Learner, Learner]]:
+    """The learners of a method, over seconds since the command, and over decisions."""
     files = {*folder.glob("*.json"), *(path.parent for path in folder.rglob("summary.json"))}
     runs = [evaluated(path) for path in sorted(files)]
     alone = [run[0] for run in runs if len(run) == 1 and len(run[0][0].x) > 2]
     shared = [counted for run in runs if len(run) > 1 for _, counted in run]
     if not (alone and shared):
-        return [timed for run in runs for timed, _ in run]
+        return [both for run in runs for both in run]
     time = clock(alone)
-    return [
+    timed = [
         replace(each, x=time(each.x), ended=float(time(np.array(each.ended)))) for each in shared
     ]
+    return [*zip(timed, shared, strict=True)]
+
+
+def by_decisions(each: Sequence[tuple[Learner, Learner]]) -> dict[str, dict[str, Any]]:
+    """After as many decisions as all evaluated at: returns [S], mean seconds since the command."""
+    at = [dict(zip(c.x, zip(t.x, t.y, strict=True), strict=True)) for t, c in each]
+    common = sorted(set.intersection(*({*found} for found in at))) if at else []
+    both = {f"{n:,.0f}": [*zip(*(found[n] for found in at), strict=True)] for n in common}
+    return {
+        "returns": {n: [*y] for n, (_, y) in both.items()},
+        "seconds": {n: float(np.mean(t)) for n, (t, _) in both.items()},
+    }
 
 
 def after(learner: Learner, minutes: float) -> float:
@@ -120,16 +132,18 @@ def alone(folder: Path) -> dict[str, Any]:
 
 
 def numbers(folder: Path) -> dict[str, Any]:
-    """Curves of all methods, the returns [S] after MINUTES, and the runs of one learner.
+    """Curves of all methods, the returns [S] after MINUTES and decisions, and runs of one learner.
 
     evaluations of these: [s] since the command, decisions, return.
     """
     found: dict[str, Any] = {"metric": METRIC, "x": "wall_s"}
-    found |= {"alone": {}, "minutes": {}, "curves": []}
+    found |= {"alone": {}, "minutes": {}, "decisions": {}, "curves": []}
     for robot in sorted(path for path in folder.iterdir() if path.is_dir()):
         methods = sorted(path for path in robot.iterdir() if path.is_dir())
-        panel = {(robot.name, path.name): members(path) for path in methods}
+        both = {(robot.name, path.name): members(path) for path in methods}
+        panel = {key: [timed for timed, _ in each] for key, each in both.items()}
         rows = found["minutes"][robot.name] = {}
+        found["decisions"][robot.name] = {key[1]: by_decisions(each) for key, each in both.items()}
         for key, (each, notes) in count_failures(METRIC, panel).items():
             rows[key[1]] = {str(m): [after(one, m) for one in each] for m in MINUTES}
             curve = curve_of(key, METRIC, each, 0.0, notes)
@@ -149,11 +163,11 @@ def merged(kept: dict[str, Any], found: dict[str, Any]) -> dict[str, Any]:
     curves = {
         (one["task"], one["label"]): one for numbers in (kept, found) for one in numbers["curves"]
     }
-    minutes = dict(kept["minutes"])
-    for robot, rows in found["minutes"].items():
-        minutes[robot] = minutes.get(robot, {}) | rows
-    both = {"minutes": minutes, "curves": [*curves.values()]}
-    return kept | found | both | {"alone": kept["alone"] | found["alone"]}
+    both: dict[str, Any] = {"curves": [*curves.values()], "alone": kept["alone"] | found["alone"]}
+    for name in ("minutes", "decisions"):
+        robots = {**kept[name], **found[name]}
+        both[name] = {r: kept[name].get(r, {}) | found[name].get(r, {}) for r in robots}
+    return kept | found | both
 
 
 def order(curve: Curve) -> tuple[int, int]:

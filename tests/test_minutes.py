@@ -25,7 +25,11 @@ def test_learners_that_share_a_program_have_the_clock_of_one_alone(tmp_path):
     for method in ("mixed", "together"):
         written(tmp_path / "robot" / method / "ten", [0, 1], 20, 10)
     written(tmp_path / "robot" / "mixed" / "alone", [7], 100, 10)
-    found = minutes.numbers(tmp_path)["minutes"]["robot"]
+    numbers = minutes.numbers(tmp_path)
+    counted = numbers["decisions"]["robot"]["mixed"]
+    assert counted["returns"]["3,000"] == [30, 30]
+    assert counted["seconds"] == {f"{k},000": 40 + 10 * k for k in range(1, 6)}
+    found = numbers["minutes"]["robot"]
     assert found["mixed"]["1"] == [20, 20]  # at 60 s: 2,000 decisions
     assert np.isnan(found["mixed"]["2"]).all()  # it ended at 90 s
     assert np.isnan(found["together"]["1"]).all()  # the first evaluation is at 90 s
