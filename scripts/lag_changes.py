@@ -52,7 +52,7 @@ class Late:
         controller, self.params = self.policy.learner(None, "policy")
         assert self.policy.config is not None
         self.spec, model = self.policy.episode.spec, instantiate(self.policy.config.model)
-        self.controller = AheadController(controller, model, 0.0, PENDING)
+        self.controller = AheadController(controller, model, self.spec, 0.0, PENDING)
         self.act, self.informed = jax.jit(self.controller.act), jax.jit(informed)
 
         def predict(obs: Any, u: Any) -> Any:

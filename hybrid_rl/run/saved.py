@@ -132,7 +132,9 @@ def with_lag(trained: Trained, folder: Path) -> Trained:
     if not isinstance(env, Robot):
         return trained
     lag = float(whole((known_lag(env, folder / "robot") or 0.0) / env.spec.dt))
-    acting = {mode: ahead(each, lag) for mode, each in trained.controllers.items()}
+    acting = {
+        mode: ahead(each, trained.episode.spec, lag) for mode, each in trained.controllers.items()
+    }
     return replace(trained, controllers=acting)
 
 

@@ -1,12 +1,13 @@
 """u = u'(o'): a controller whose action acts late acts at the observation predicted for then.
 
-    x_{j+1} = f(x_j, u_{j-k}),   j = 0 ... k-1,   o' = x_k's observation     u_j: sent, u_{-1} last
+    o_{j+1} = f(o_j, u_{j-k}),   j = 0 ... k-1,   o' = o_k     u_j: sent, u_{-1} last
 
 The mean of the model rolls the newest observation forward over the k actions that are pending:
-sent, and not acting yet. So model, policy, critic and plans are those of the undelayed robot, if
-transitions hold the action that acted, and another lag needs no learning. Of a part of a decision
-a model of whole ones says nothing, so an action is held back until it acts whole decisions after
-its observation (`wrappers.whole`). Without a model, as in `sac`, nothing is predicted.
+sent, and not acting yet. A history of observations (`core.history`) gets what is predicted, too. So
+model, policy, critic and plans are those of the undelayed robot, if transitions hold the action
+that acted, and another lag needs no learning. Of a part of a decision a model of whole ones says
+nothing, so an action is held back until it acts whole decisions after its observation
+(`wrappers.whole`). Without a model, as in `sac`, nothing is predicted.
 
 Source: Derman et al. 2021, "Acting in delayed environments with non-stationary Markov policies";
 Agarwal and Aggarwal 2021. Held back: arXiv 2507.18992, a conservative agent for random delays.
@@ -20,7 +21,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import lifting
+from hybrid_rl.core import history, lifting
 from hybrid_rl.fields import Count, NotNegative, part
 from hybrid_rl.networks.precision import using
 from hybrid_rl.protocols import Controller, Model
@@ -44,6 +45,7 @@ class AheadController:
 
     controller: Controller
     model: Model
+    spec: Spec  # of single observations
     lag: NotNegative = 0.0  # [decisions] from an observation until its action acts, rounded
     most: Count = 1  # K [decisions] longest lag that is predicted
 
@@ -56,21 +58,29 @@ class AheadController:
         self, params: Params, state: AheadState, obs: Array, key: Array
     ) -> tuple[Array, AheadState, dict[str, Array]]:
         """Action [m], next state, metrics. The key is consumed."""
-        x = self.predicted(params, state, lifting.start(self.model, params, obs))
-        if lifting.is_world(self.model):
-            params = params._replace(world=x)
-        there = lifting.policy_input(x)[: obs.size]
+        world = lifting.is_world(self.model)
+        now = lifting.start(self.model, params, obs) if world else obs
+        there = self.predicted(params, state, now)
+        if world:
+            params, there = params._replace(world=there), there.obs
         u, inner, metrics = self.controller.act(params, state.inner, there, key)
         return u, remembered(state._replace(inner=inner), u), metrics
 
-    def predicted(self, params: Params, state: AheadState, x: Any) -> Any:
-        """The planning state at which an action that is sent at x begins to act, in float32."""
+    def predicted(self, params: Params, state: AheadState, seen: Any) -> Any:
+        """The observation at which an action that is sent at `seen` begins to act, in float32.
 
-        def later(j: Array, x: Any) -> Any:
-            return self.model.step(params.model, x, _acting(state, self.most + 1 + j))
+        Of a world model both are states of the world.
+        """
+
+        def later(j: Array, seen: Any) -> Any:
+            u = _acting(state, self.most + 1 + j)
+            if lifting.is_world(self.model):
+                return self.model.step(params.model, seen, u)
+            x = self.model.step(params.model, self.model.lift(params.model, seen), u)
+            return history.shifted(seen, u, x[: self.spec.obs], self.spec.dt)
 
         with using("float32"):
-            return jax.lax.fori_loop(0, jnp.round(state.lag).astype(int), later, x)
+            return jax.lax.fori_loop(0, jnp.round(state.lag).astype(int), later, seen)
 
     def greedy(self) -> "AheadController":
         """The controller without exploration, at the same states."""
@@ -95,17 +105,20 @@ def _acting(state: AheadState, now: int | Array) -> Array:
     return state.sent[jnp.clip(acting, 0, len(state.sent) - 1)]
 
 
-def ahead(controller: Controller, lag: float, most: int = 0) -> Controller:
+def ahead(controller: Controller, spec: Spec, lag: float, most: int = 0) -> Controller:
     """`controller`, at predicted states if it has a model and there is a `lag` [decisions].
 
-    most: [decisions] longest lag, if it may change. One that has another lag gets this one.
+    spec: of single observations. most: [decisions] longest lag, if it may change. A controller that
+    has another lag gets this one.
     """
     if isinstance(controller, AheadController):
         controller = controller.controller
     models = (inner for _, name, _, inner in parts(controller) if name == "model")
     model, most = next(models, None), max(most, round(lag))
     return (
-        controller if model is None or not most else AheadController(controller, model, lag, most)
+        controller
+        if model is None or not most
+        else AheadController(controller, model, spec, lag, most)
     )
 
 
@@ -118,7 +131,7 @@ def acting_ahead(
     """
     longest = int(whole(episode.longest / episode.spec.dt)) if episode.knows_lag else 0
     lag, most = episode.known_lag, max(most, longest)
-    acting = {mode: ahead(each, lag, most) for mode, each in controllers.items()}
+    acting = {mode: ahead(each, episode.spec, lag, most) for mode, each in controllers.items()}
     if episode.late and not any(isinstance(each, AheadController) for each in acting.values()):
         episode = replace(episode, lag=0.0)
     return episode, acting

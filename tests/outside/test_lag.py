@@ -80,7 +80,8 @@ def test_a_robots_controllers_act_at_the_lag_that_was_found_last(tmp_path, lag, 
     (tmp_path / "robot").mkdir()
     if lag is not None:
         lags.publish(tmp_path / "robot", lag)
-    acting = {"policy": ahead(policy, 0.0, most=9)}
-    trained = Trained("robot", Episode(env, steps=5), acting, Params(), (0,), 0, ())
+    episode = Episode(env, steps=5)
+    acting = {"policy": ahead(policy, env.spec, 0.0, most=9)}
+    trained = Trained("robot", episode, acting, Params(), (0,), 0, ())
     found = with_lag(trained, tmp_path).controllers["policy"]
-    assert found == (ahead(policy, 2.0) if decisions else policy)
+    assert found == (ahead(policy, episode.spec, 2.0) if decisions else policy)

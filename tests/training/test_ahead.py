@@ -12,7 +12,7 @@ from hybrid_rl.models.exact import Exact
 from hybrid_rl.models.world import World
 from hybrid_rl.training.ahead import AheadController, ahead
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.types import Params
+from hybrid_rl.types import Params, Spec
 
 ENV = Pendulum()
 KEY = jax.random.key(0)
@@ -38,7 +38,7 @@ class Seeing:
 @pytest.mark.parametrize("lag", [1.0, 3.0])
 def test_the_predicted_state_is_that_of_the_model_rolled_by_hand(lag):
     model, sent = Exact(ENV), jnp.array([[0.7], [-0.5], [0.9], [0.2]])
-    controller = AheadController(Seeing(), model, lag, most=3)
+    controller = AheadController(Seeing(), model, ENV.spec, lag, most=3)
     state = controller.init(ENV.spec)._replace(sent=sent)
     x = start = jnp.array([np.cos(2.0), np.sin(2.0), 1.5])
     for u in sent[4 - int(lag) :]:
@@ -49,12 +49,35 @@ def test_the_predicted_state_is_that_of_the_model_rolled_by_hand(lag):
     np.testing.assert_array_equal(later, start)  # a lag may change
 
 
+@dataclass(frozen=True)
+class Summing:
+    """o' = o + u sum(s), at planning states (o, sum(s))."""
+
+    def lift(self, params, obs):
+        return jnp.stack((obs[0], obs.sum()))
+
+    def step(self, params, x, u):
+        return jnp.stack((x[0] + u[0] * x[1], jnp.nan))
+
+
+def test_a_history_gets_what_is_predicted():
+    """s = (o, v, u_before, v_before, u_before that) with decisions of 0.5 s, two of them late."""
+    spec = Spec(obs=1, act=1, dt=0.5)
+    controller = AheadController(Seeing(), Summing(), spec, lag=2.0, most=2)
+    state = controller.init(spec)._replace(sent=jnp.array([[9.0], [2.0], [-1.0]]))
+    s = jnp.array([1.0, 2.0, 0.3, 4.0, 0.5])
+    first = np.array([1 + 2 * 7.8, 2 * 2 * 7.8, 2.0, 2.0, 0.3])
+    then = first[0] - first.sum()
+    got = controller.predicted(Params(), state, s)
+    np.testing.assert_allclose(got, [then, -2 * first.sum(), -1, first[1], 2], rtol=1e-5)
+
+
 @pytest.mark.parametrize("model", [Exact(ENV), World(Episode(ENV))])
 @pytest.mark.parametrize("delay", [1.5, 2.0])
 def test_it_acts_at_what_will_be_observed(model, delay):
     """Two decisions later, from the second on: by the true model that is the truth."""
     episode = Episode(ENV, delay=delay * ENV.spec.dt)
-    controller = ahead(Seeing(model), episode.known_lag)
+    controller = ahead(Seeing(model), ENV.spec, episode.known_lag)
     state, control, obs, seen = episode.reset(KEY), controller.init(ENV.spec), [], []
     act, step = jax.jit(controller.act), jax.jit(episode.step)
     for key in jax.random.split(KEY, 8):
@@ -69,9 +92,11 @@ def test_it_acts_at_what_will_be_observed(model, delay):
 
 def test_it_is_around_controllers_with_a_model_where_there_is_a_lag():
     with_model, without = Seeing(Exact(ENV)), Seeing()
-    assert ahead(with_model, 0.0) is with_model
-    assert ahead(without, 1.0) is without
-    assert ahead(with_model, 2.0).most == 2
-    assert ahead(ahead(with_model, 2.0), 0.0) is with_model
-    assert ahead(ahead(with_model, 2.0), 3.0) == ahead(with_model, 3.0)
-    assert ahead(with_model, 0.0, most=4).lag == 0
+    assert ahead(with_model, ENV.spec, 0.0) is with_model
+    assert ahead(without, ENV.spec, 1.0) is without
+    assert ahead(with_model, ENV.spec, 2.0).most == 2
+    assert ahead(ahead(with_model, ENV.spec, 2.0), ENV.spec, 0.0) is with_model
+    assert ahead(ahead(with_model, ENV.spec, 2.0), ENV.spec, 3.0) == ahead(
+        with_model, ENV.spec, 3.0
+    )
+    assert ahead(with_model, ENV.spec, 0.0, most=4).lag == 0

@@ -115,7 +115,7 @@ def test_one_observation_is_the_program_of_before():
 
 
 @pytest.mark.parametrize(
-    ("inner", "u"), [(Telling(), 0.3), (AheadController(Telling(), Exact(ENV)), 0.2)]
+    ("inner", "u"), [(Telling(), 0.3), (AheadController(Telling(), Exact(ENV), ENV.spec), 0.2)]
 )
 def test_a_robot_says_what_it_sent(inner, u):
     """That is the last action; where a lag of one decision is known, the one before."""
