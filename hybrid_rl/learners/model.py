@@ -14,14 +14,13 @@ The decay of weights is AdamW's (Loshchilov and Hutter 2019).
 from typing import Annotated, Any, ClassVar, cast
 
 import jax
-import jax.numpy as jnp
 import optax
 from flax import struct
 from jax import Array
 
 from hybrid_rl.core import decay
 from hybrid_rl.core.decay import adamw
-from hybrid_rl.core.lifting import lifted_spec
+from hybrid_rl.core.lifting import lifted_batch, lifted_spec
 from hybrid_rl.fields import Count, Discount, NotNegative, Positive, has, part
 from hybrid_rl.protocols import Reward, Schedule, Trainable
 from hybrid_rl.types import Batch, Params, Spec
@@ -105,24 +104,19 @@ class ModelLearner:
     ) -> tuple[ModelState, dict[str, Array]]:
         """One Adam step: the model's loss on all batches, the reward's on the first."""
         model = self.model.observe(state.model, batch.obs, batch.next_obs)
-        lift = jax.vmap(self.model.lift, (None, 0))
-        x, back = jax.vjp(lambda f: lift({**model, "weights": f}, batch.obs), model["weights"])
-        lifted = batch._replace(obs=x, next_obs=lift(model, batch.next_obs))
-        reward, reward_loss = self._reward(state.reward, lifted)
+        reward, reward_loss = self._reward(state.reward, model, batch)
 
-        def loss(weights: tuple[Any, Any], x: Array) -> tuple[Array, tuple[Array, Array | None]]:
+        def loss(weights: tuple[Any, Any]) -> tuple[Array, tuple[Array, Array | None]]:
             f, r = weights
             tuned = {**model, "weights": f}
-            of_model = self.model.loss(tuned, x, batch.action, batch.next_obs, key)
+            of_model = self.model.loss(tuned, batch.obs, batch.action, batch.next_obs, key)
             if reward_loss is None:
                 return of_model, (of_model, None)
-            of_reward = reward_loss(r, x[: self.batch_size])
+            of_reward = reward_loss(r, tuned)
             return of_model + of_reward, (of_model, of_reward)
 
         weights = _weights(model, reward)
-        both = jax.grad(loss, argnums=(0, 1), has_aux=True)(weights, x)
-        ((of_f, of_r), of_x), (of_model, of_reward) = both
-        grads = jax.tree.map(jnp.add, of_f, *back(of_x)), of_r  # a lift may have weights, too
+        grads, (of_model, of_reward) = jax.grad(loss, has_aux=True)(weights)
         factor = decay.of_rates(self.schedule, params.decisions)
         change, optimiser = self._optimiser(factor).update(grads, state.optimiser, weights)
         updated: Any = optax.apply_updates(weights, change)
@@ -132,15 +126,16 @@ class ModelLearner:
             reward, metrics["model/reward_loss"] = {**reward, "weights": r}, of_reward
         return ModelState({**model, "weights": f}, reward, optimiser), metrics
 
-    def _reward(self, reward: Any, batch: Batch) -> tuple[Any, Any]:
-        """The reward's parameters with updated statistics, and its loss at x [B, n].
+    def _reward(self, reward: Any, model: Any, batch: Batch) -> tuple[Any, Any]:
+        """The reward's parameters with updated statistics, and its loss as a function.
 
-        batch: of planning states.
+        The function gets the model, too: its lift may have weights, which a reward teaches.
         """
         part = cast(Any, self.reward)
         if part is None:
             return None, None
-        first: Any = jax.tree.map(lambda x: x[: self.batch_size], batch)
+        observed: Any = jax.tree.map(lambda x: x[: self.batch_size], batch)
+        first = lifted_batch(self.model, model, observed)
         reward = part.observe(reward, first.obs)
         target = first.reward
         if self.reward_discount > 0:
@@ -152,8 +147,9 @@ class ModelLearner:
             target = target + goes_on * later
         reward = part.observe_targets(reward, target)
 
-        def loss(weights: Any, x: Array) -> Array:
+        def loss(weights: Any, model: Any) -> Array:
             each = jax.vmap(part.loss, (None, 0, 0, 0, 0, 0))
+            x = jax.vmap(self.model.lift, (None, 0))(model, observed.obs)
             tuned, known = {**reward, "weights": weights}, (x, first.action, first.next_obs)
             return each(tuned, *known, target, first.terminated).mean()
 

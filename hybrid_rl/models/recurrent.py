@@ -109,8 +109,9 @@ class Recurrent:
     def loss(
         self, params: dict[str, Any], obs: Array, action: Array, next_obs: Array, key: Array
     ) -> Array:
-        """Mean loss [] of transitions [members * B, ...] from `obs`, an x. The key is consumed."""
-        return self.model.loss(self._inner(params), obs, action, next_obs, key)
+        """Mean loss [] of transitions [members * B, ...]. The key is consumed."""
+        x = jax.vmap(self.lift, (None, 0))(params, obs)
+        return self.model.loss(self._inner(params), x, action, next_obs, key)
 
     def _inner(self, params: dict[str, Any]) -> dict[str, Any]:
         """The parameters of the inner model."""

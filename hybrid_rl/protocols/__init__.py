@@ -226,10 +226,7 @@ class Trainable(Model, Protocol):
         """Parameters with statistics updated by observations [B, o] and their successors."""
 
     def loss(self, params: PyTree, obs: Array, action: Array, next_obs: Array, key: Array) -> Array:
-        """Mean loss [] of transitions [members * B, ...]. The key is consumed.
-
-        They lead from planning states, `obs`, to observations.
-        """
+        """Mean loss [] of transitions [members * B, ...]. The key is consumed."""
 
     def draw(self, params: PyTree, x: Array, u: Array, noise: Array, key: Array) -> Array:
         """Samples of the next planning states [B, n], for noise [B, n] ~ N(0, I)."""
