@@ -1,16 +1,20 @@
 """x = (o, v, h): a model whose state remembers what was seen and done.
 
-    h_t = GRU(h_{t-1}, (o_t, v_t, u_{t-1})),   v_t = (o_t - o_{t-1}) / dt
+    h_t = h_{t-1} + K_t (y_t - h_{t-1}),   K_t, y_t = network(o_t, v_t, u_{t-1})
 
-An observation that lacks velocities or a load says more together with all that came before it than
-with the last few: the network learns what to keep. The state at a history s of `core.history` is
-that after its k - 1 decisions, from h = 0; a prediction takes one step more, so that imagined
-decisions need no history. The inner model predicts o' at x; `h` learns what helps it, and what
-tells the reward (`learners/model.py`).
+with v_t = (o_t - o_{t-1}) / dt, 0 < K < 1 and -1 < y < 1, for each of its numbers: a filter whose
+gain is learned. Where an observation lacks a velocity or a load, a decision may tell it, or not, as
+a foot on the ground tells the speed: then K is large, or small. At a history s of `core.history`,
+h is the mean of its y, weighted as above, so that it does not depend on a value before; a
+prediction goes one step on, and imagined decisions need no history. A mean stays what it is over
+decisions of any number, where a network that is trained over a few may leave its range.
 
-Source: Cho et al. 2014, "Learning phrase representations using RNN encoder-decoder" (the GRU);
-Hafner et al. 2019, "Learning latent dynamics for planning from pixels": a deterministic memory, in
-which policies and planners act, learned by predictions alone.
+The inner model predicts o' at x. What it makes of h, and what the reward does
+(`learners/model.py`), teaches the filter.
+
+Source: a gated recurrent unit whose gates see no state (Feng et al. 2024, "Were RNNs all we
+needed?"), without its bias towards 0 at first (as Adam's means, Kingma and Ba 2015). A
+deterministic memory in which policies and planners act: Hafner et al. 2019 (PlaNet).
 """
 
 from typing import Any, cast
@@ -21,9 +25,11 @@ from jax import Array
 
 from hybrid_rl.core import statistics
 from hybrid_rl.fields import Count, FieldError, part
-from hybrid_rl.networks import MLP, apply
+from hybrid_rl.networks import MLP, Widths, apply
 from hybrid_rl.protocols import Trainable
 from hybrid_rl.types import Spec
+
+TINY = 1e-12  # weight of a history that tells nothing
 
 
 @part
@@ -33,6 +39,7 @@ class Recurrent:
     model: Trainable
     history: Count  # observations from which the memory is read
     memory: Count = 64
+    hidden: Widths = (128,)  # of the network of K and y
 
     def __post_init__(self) -> None:
         if self.history < 2:
@@ -44,22 +51,18 @@ class Recurrent:
         return self.model.members
 
     @property
-    def _gates(self) -> MLP:
-        """The linear maps of a GRU, of what resets, what keeps and what is new."""
-        return MLP((), 3 * self.memory)
+    def _net(self) -> MLP:
+        """K and y of a decision, before they are squashed."""
+        return MLP(self.hidden, 2 * self.memory, "silu")
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Initial parameters. The key is consumed."""
-        for_model, for_cell = jax.random.split(key)
+        for_model, for_filter = jax.random.split(key)
         assert spec.newest is not None
         moving = 2 * spec.newest  # o and v
         inner = self.model.init(for_model, spec._replace(obs=moving + self.memory))
-        of_row, of_h = jax.random.split(for_cell)
-        cell = {
-            "row": self._gates.init(of_row, jnp.zeros(moving + spec.act)),
-            "h": self._gates.init(of_h, jnp.zeros(self.memory)),
-        }
-        return {**inner, "weights": {"model": inner["weights"], "cell": cell}}
+        net = self._net.init(for_filter, jnp.zeros(moving + spec.act))
+        return {**inner, "weights": {"model": inner["weights"], "filter": net}}
 
     def observe(self, params: dict[str, Any], obs: Array, next_obs: Array) -> dict[str, Any]:
         """Parameters with statistics of o and v in histories [B, s] and successors; h has none."""
@@ -80,11 +83,10 @@ class Recurrent:
         rows = obs[o:].reshape(self.history - 1, -1)  # v and u before it, newest first
         seen = obs[None, :o] - dt * (jnp.cumsum(rows[:, :o], 0) - rows[:, :o])
         rows = jnp.concatenate((seen, rows), 1)
-
-        def onward(h: Array, row: Array) -> tuple[Array, None]:
-            return self._remembered(params, h, row), None
-
-        h = jax.lax.scan(onward, jnp.zeros(self.memory), self._seen(params, rows), reverse=True)[0]
+        gain, y = self._told(params, rows)
+        left = jnp.cumprod(jnp.concatenate((jnp.ones((1, self.memory)), 1 - gain[:-1])), 0)
+        weight = gain * left
+        h = (weight * y).sum(0) / jnp.maximum(weight.sum(0), TINY)
         return jnp.concatenate((obs[: 2 * o], h))
 
     def step(self, params: dict[str, Any], x: Array, u: Array) -> Array:
@@ -121,21 +123,14 @@ class Recurrent:
         """The state [n] after x [n] and u [m], where the inner model says `after`: with its h."""
         moving = x.size - self.memory
         row = jnp.concatenate((after[:moving], u))
-        h = self._remembered(params, x[moving:], self._seen(params, row))
-        return jnp.concatenate((after[:moving], h))
+        gain, y = self._told(params, row)
+        return jnp.concatenate((after[:moving], x[moving:] + gain * (y - x[moving:])))
 
-    def _seen(self, params: dict[str, Any], rows: Array) -> Array:
-        """What the gates get of rows (o, v, u) [..., d] of decisions: [..., 3 memory]."""
+    def _told(self, params: dict[str, Any], rows: Array) -> tuple[Array, Array]:
+        """K and y [..., memory] of rows (o, v, u) [..., d] of decisions."""
         moving = params["state"].mean.size - self.memory
         state = jax.tree.map(lambda leaf: leaf[:moving] if leaf.ndim else leaf, params["state"])
         x = statistics.normalise(state, rows[..., :moving])
         x = jnp.concatenate((x, rows[..., moving:]), -1)
-        return apply(self._gates, params["weights"]["cell"]["row"], x)
-
-    def _remembered(self, params: dict[str, Any], h: Array, seen: Array) -> Array:
-        """The memory after h, by what is `seen` [3 memory]."""
-        kept = jnp.split(apply(self._gates, params["weights"]["cell"]["h"], h), 3)
-        reset, keep, new = jnp.split(seen, 3)
-        keep = jax.nn.sigmoid(keep + kept[1])
-        new = jnp.tanh(new + jax.nn.sigmoid(reset + kept[0]) * kept[2])
-        return (1 - keep) * new + keep * h
+        gain, y = jnp.split(apply(self._net, params["weights"]["filter"], x), 2, -1)
+        return jax.nn.sigmoid(gain), jnp.tanh(y)

@@ -1,12 +1,12 @@
 """A model whose state remembers an episode."""
 
+from dataclasses import replace
 from functools import partial
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from flax import linen as nn
 from toys import begun
 
 from hybrid_rl.core import history
@@ -14,12 +14,13 @@ from hybrid_rl.learners.model import ModelLearner
 from hybrid_rl.models.ensemble import Ensemble
 from hybrid_rl.models.gaussian import Gaussian
 from hybrid_rl.models.recurrent import Recurrent
+from hybrid_rl.networks import MLP
 from hybrid_rl.rewards.network import RewardNetwork
 from hybrid_rl.types import Batch, Params, Spec
 
 D, M, H, K = 2, 1, 5, 4
 SPEC = Spec(obs=D, act=M, dt=0.1)
-MODEL = Recurrent(Ensemble(Gaussian((8,), state_noise=True), 2), history=K, memory=H)
+MODEL = Recurrent(Ensemble(Gaussian((8,), state_noise=True), 2), history=K, memory=H, hidden=(16,))
 KEY = jax.random.key(0)
 close = partial(np.testing.assert_allclose, rtol=1e-4, atol=1e-5)
 
@@ -43,47 +44,55 @@ def params(lived):
     return MODEL.observe(begun(MODEL, history.seen(SPEC, K)), s[:-1], s[1:])
 
 
-def test_the_memory_is_a_gru_over_the_last_decisions(lived, params):
-    """Flax' GRU, of o, v = (o - o_before) / dt, both normalised, and the action before; h = 0."""
+def told(params, obs, before, u):
+    """K and y [h] of observation `obs` [o] after action u [m] at the one `before`."""
+    moving = jnp.concatenate((obs, (obs - before) / SPEC.dt))
+    moving = (moving - params["state"].mean[: 2 * D]) / params["state"].scale[: 2 * D]
+    out = MLP((16,), 2 * H, "silu").apply(params["weights"]["filter"], jnp.concatenate((moving, u)))
+    return jax.nn.sigmoid(out[:H]), jnp.tanh(out[H:])
+
+
+def test_the_memory_is_a_filter_over_the_last_decisions(lived, params):
+    """As of all decisions before, by the share of the weights that the last ones have."""
     obs, u, s = lived
-    cells = {name: cell["params"]["Dense_0"] for name, cell in params["weights"]["cell"].items()}
-    parts = jax.tree.map(lambda leaf: jnp.split(leaf, 3, -1), cells, is_leaf=None)
-    weights = {}
-    for i, gate in enumerate("rzn"):
-        for name, of in (("i", "row"), ("h", "h")):
-            weights[name + gate] = {key: parts[of][key][i] for key in ("kernel", "bias")}
-        if gate != "n":
-            weights["i" + gate]["bias"] += weights["h" + gate].pop("bias")
-    h, t = jnp.zeros(H), 6
+    sums, weights, t = jnp.zeros(H), jnp.zeros(H), 6
     for i in range(t - K + 2, t + 1):
-        moving = jnp.concatenate((obs[i], (obs[i] - obs[i - 1]) / SPEC.dt))
-        state = params["state"]
-        moving = (moving - state.mean[: 2 * D]) / state.scale[: 2 * D]
-        row = jnp.concatenate((moving, u[i - 1]))
-        h = nn.GRUCell(H).apply({"params": weights}, h, row)[0]
+        gain, y = told(params, obs[i], obs[i - 1], u[i - 1])
+        sums, weights = sums + gain * (y - sums), weights + gain * (1 - weights)
     x = MODEL.lift(params, s[t])
     close(x[: 2 * D], s[t][: 2 * D])
-    close(x[2 * D :], h)
+    close(x[2 * D :], sums / weights)
 
 
-def test_a_predicted_decision_is_remembered_as_a_real_one(lived, params):
-    """The memory after a step is that of a history with the predicted observation, one longer."""
-    _, u, s = lived
+def test_predicted_decisions_go_on_from_there(lived, params):
+    obs, u, s = lived
     x = MODEL.lift(params, s[5])
-    longer = Recurrent(MODEL.model, history=K + 1, memory=H)
-    noise, draw = jnp.ones((1, x.size)), jax.jit(MODEL.draw)
     mean, disagreement, each = MODEL.predictions(params, x, u[5])
-    drawn = draw(params, x[None], u[5][None], noise, KEY)[0]
+    drawn = jax.jit(MODEL.draw)(params, x[None], u[5][None], jnp.ones((1, x.size)), KEY)[0]
     close(mean, MODEL.step(params, x, u[5]))
     assert disagreement.size == MODEL.disagreement(params, x, u[5]).size == D
     for after in (mean, *each, drawn):
-        rows = jnp.concatenate((after[:D], (after[:D] - s[5][:D]) / SPEC.dt, u[5], s[5][D:]))
-        close(after, longer.lift(params, rows))
+        gain, y = told(params, after[:D], obs[5], u[5])
+        close(after[D : 2 * D], (after[:D] - obs[5]) / SPEC.dt)
+        close(after[2 * D :], x[2 * D :] + gain * (y - x[2 * D :]))
     assert not np.allclose(drawn[:D], mean[:D])
 
 
+@pytest.mark.parametrize("bias", [-200.0, -3.0, 200.0])
+def test_a_memory_of_equal_decisions_is_what_each_tells(bias, params):
+    """Whatever the gain; where it is 0, nothing: 0. So a long history is no other than a short."""
+    filter_ = jax.tree.map(jnp.zeros_like, params["weights"]["filter"])
+    filter_["params"]["Dense_1"]["bias"] = jnp.full(2 * H, 0.7).at[:H].set(bias)
+    params = {**params, "weights": {**params["weights"], "filter": filter_}}
+    for length in (2, 40):
+        longer = replace(MODEL, history=length)
+        size = history.seen(SPEC, length).obs
+        h = longer.lift(params, jnp.arange(size) / size)[2 * D :]
+        close(h, np.tanh(0.7) if bias > -200 else 0)
+
+
 def test_model_and_reward_teach_the_memory(lived):
-    """Each moves the weights of the cell by itself, in the direction of its own gradient."""
+    """The model alone moves the filter's weights; with a reward they move elsewhere."""
     obs, u, s = lived
     spec = history.seen(SPEC, K)
     ones = jnp.ones(7)
@@ -95,10 +104,10 @@ def test_model_and_reward_teach_the_memory(lived):
         state = learner.init(KEY, spec)
         given = both._replace(reward=factor * both.reward)
         after, metrics = jax.jit(learner.update)(state, Params(), given, KEY)
-        cell = jax.tree.map(
-            jnp.subtract, after.model["weights"]["cell"], state.model["weights"]["cell"]
+        net = jax.tree.map(
+            jnp.subtract, after.model["weights"]["filter"], state.model["weights"]["filter"]
         )
-        return jax.tree.leaves(cell), metrics
+        return jax.tree.leaves(net), metrics
 
     alone, with_reward = moved(None)[0], moved(RewardNetwork((8,)))[0]
     assert all(np.abs(leaf).max() > 1e-4 for leaf in alone)
