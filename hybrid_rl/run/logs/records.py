@@ -7,10 +7,9 @@ seed in a file.
 
 import json
 import math
-from collections.abc import Container, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Container, Mapping
 from types import NoneType
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -21,15 +20,6 @@ Row = dict[str, Any]
 COORDINATES = ("step", "seed", "wall_s")  # of a row; every other name but WORD is a metric
 WORD = "diverged"  # of a row: the only value that is no number
 Number = int | float | NoneType
-
-
-class Begun(NamedTuple):
-    """A run whose rows are to come."""
-
-    folder: Path
-    seeds: Sequence[int]
-    config: dict[str, Any]
-    step: int | None = None  # from which it is resumed
 
 
 def row_of(line: bytes) -> Row | None:
