@@ -96,9 +96,8 @@ def joined(starts: Sequence[Start | None]) -> Start | None:
     known = [start for start in starts if start is not None]
     if not known:
         return None
-    memories = [start.memory for start in known if start.memory is not None]
-    memory = join(*memories) if memories else None
-    return Start(join(*(start.learners for start in known)), memory, known[0].line)
+    learners, memory = join(*((start.learners, start.memory) for start in known))
+    return Start(learners, memory, known[0].line)
 
 
 def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:

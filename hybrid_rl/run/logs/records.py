@@ -48,20 +48,6 @@ def result_line(summary: Mapping[str, Any]) -> str:
     return "; ".join(parts)
 
 
-def changes(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
-    """Lines "KEY was A and is B", by full keys.
-
-    A part occurs several times in a configuration: its shortest key names a change.
-    """
-    changed: dict[str, str] = {}
-    for key in sorted({*now, *then}, key=lambda key: (key.count("."), key)):
-        before, after = then.get(key, "absent"), now.get(key, "absent")
-        if before != after:
-            line = f"was {before} and is {after}"
-            changed.setdefault(f"{key.rpartition('.')[2]} {line}", f"{key} {line}")
-    return list(changed.values())
-
-
 def flatten_keys(node: Mapping[str, Any], where: str = "") -> dict[str, Any]:
     """The values of a tree by their full keys."""
     values: dict[str, Any] = {}
