@@ -147,12 +147,9 @@ def means(sums: Sums, learners: int, end: int, ended: Container[int] = ()) -> li
 
     ended: learners that diverged, which have no row.
     """
-    averages = []
-    for s in range(learners):
-        if s in ended:
-            continue
-        row: Row = {"step": end, "learner": s}
-        own = {name: values[:, s] for name, values in sums.items()}
-        row |= {name: total / count for name, (total, count) in own.items() if count}
-        averages.append(row)
-    return averages
+    return [
+        {"step": end, "learner": s}
+        | {name: total[s] / count[s] for name, (total, count) in sums.items() if count[s]}
+        for s in range(learners)
+        if s not in ended
+    ]
