@@ -6,7 +6,6 @@ overrides. A part that occurs several times, such as a model that both the plann
 have, is written once and referenced by a YAML anchor.
 """
 
-import itertools
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
@@ -50,10 +49,10 @@ def claim_folders(configs: Sequence[DictConfig]) -> Iterator[list[Path]]:
                 with open_dict(config):
                     config.run_dir = str(folder)
             stack.enter_context(lock(folder, "run_dir"))
-        for folder, name in itertools.product([parent, *folders], ("config.yaml", SWEEP)):
-            if (folder / name).exists():
-                line = f"holds a run already; choose another, or resume={parent}"
-                raise UsageError(f"run_dir={parent}: {line}")
+        files = (run / name for run in (parent, *folders) for name in ("config.yaml", SWEEP))
+        if any(map(Path.exists, files)):
+            line = f"holds a run already; choose another, or resume={parent}"
+            raise UsageError(f"run_dir={parent}: {line}")
         yield folders
 
 

@@ -6,7 +6,7 @@ A `Job` has its runs in their folders: settings, records and checkpoints, up to 
 import json
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack, nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib.util import find_spec
 from itertools import cycle
 from pathlib import Path
@@ -76,9 +76,10 @@ class Job:
     """K runs, their folders, what sets each apart, and the numbers in which they differ."""
 
     runs: Sequence[Run]
-    folders: Sequence[Path]
+    folders: Sequence[Path] = ()  # once there are such
     values: Sequence[Mapping[str, float]] = ({},)  # [K] key -> value
     axis: Axis = field(default_factory=Axis)
+    start: Start | None = None  # what the learners of new runs begin with
 
     def loop(self) -> Loop:
         """The loop that trains all learners."""
@@ -164,39 +165,38 @@ def train(members: Sequence[Member], given: Mapping[str, str], output: Output) -
     given: the overrides of the user, key -> value; of a resumed run, whose settings come from its
     folder, only total_steps and precision may differ.
     """
-    first = members[0].config
-    if first.resume is not None:
+    if members[0].config.resume is not None:
         return _resume(members, given, output)
+    return _begin(built(members), output)
+
+
+def built(members: Sequence[Member]) -> Job:
+    """New runs, without folders."""
     for member in members:
         check(member.config)
-    prepare(first)  # before a check of the user's world initialises JAX's devices
+        prepare(member.config)  # before a check of the user's world initialises JAX's devices
     runs, starts = zip(*(start.build_new_run(member.config) for member in members), strict=True)
-    return _begin(members, runs, starts, output)
+    values = [member.values for member in members]
+    return Job(runs, (), values, axis_of(values, runs), start.joined(starts))
 
 
 def train_built(run: Run, output: Output) -> dict[str, Any]:
     """Run what is built, in a new folder or on from the checkpoints in `config.resume`."""
     if run.config.resume is None:
-        return _begin([Member(run.config)], [run], [None], output)
+        return _begin(Job([run]), output)
     run_dir = Path(str(run.config.resume))
     with lock(run_dir, "run_dir"):
         return _run(Job([run], [run_dir]), output)
 
 
-def _begin(
-    members: Sequence[Member],
-    runs: Sequence[Run],
-    starts: Sequence[Start | None],
-    output: Output,
-) -> dict[str, Any]:
-    """Run `runs` in new folders; starts: what each begins with."""
-    values = [member.values for member in members]
-    axis, first = axis_of(values, runs), start.joined(starts)
-    logger = one_of("logger", members[0].config.get("logger"), (None, "wandb"))
+def _begin(job: Job, output: Output) -> dict[str, Any]:
+    """Run what is built in new folders."""
+    configs = [run.config for run in job.runs]
+    logger = one_of("logger", configs[0].get("logger"), (None, "wandb"))
     if logger is not None and find_spec("wandb") is None:
         raise UsageError(f"logger=wandb: not installed; {install('wandb')}")
-    with folder.claim_folders([member.config for member in members]) as folders:
-        return _run(Job(runs, folders, values, axis), output, first)
+    with folder.claim_folders(configs) as folders:
+        return _run(replace(job, folders=folders), output)
 
 
 def _resume(wanted: Sequence[Member], given: Mapping[str, str], output: Output) -> dict[str, Any]:
@@ -233,8 +233,8 @@ def fits(runs: Sequence[Run]) -> str:
     return memory.replay(runs[0], len(runs) * len(runs[0].seeds))
 
 
-def _run(job: Job, output: Output, first: Start | None = None) -> dict[str, Any]:
-    """Run a session; first: what the learners begin with."""
+def _run(job: Job, output: Output) -> dict[str, Any]:
+    """Run a session."""
     run, config = job.runs[0], job.runs[0].config
     with ExitStack() as stack:
         loop = job.loop()
@@ -246,11 +246,11 @@ def _run(job: Job, output: Output, first: Start | None = None) -> dict[str, Any]
         named = zip(job.folders, job.axis.names, strict=True)
         lines = [f"{label}{name and ' '}{name}: run folder {run_dir}" for run_dir, name in named]
         progress.note("\n".join([*lines, fits(job.runs), *run.notes]))
-        values: dict[str, Any] = {name: config[name] for name in Schedule.__dataclass_fields__}
-        values["eval_modes"] = tuple(m for m in config.eval_modes if m in config.controllers)
-        session = Session(loop, run.controllers, Schedule(**values), shelf, progress)
+        plan = Schedule(**{name: config[name] for name in Schedule.__dataclass_fields__})
+        evaluated = {m: run.controllers[m] for m in config.eval_modes if m in run.controllers}
+        session = Session(loop, evaluated, plan, shelf, progress)
         if config.resume is None:
-            session.begin(first)
+            session.begin(job.start)
         else:
             with folder.blame_config(job.folders[0]):
                 session.resume()
