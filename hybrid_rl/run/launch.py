@@ -219,9 +219,8 @@ def _resume(wanted: Sequence[Member], given: Mapping[str, str], output: Output) 
         for config, run_dir in zip(configs, folders, strict=True):
             stack.enter_context(lock(run_dir, "resume"))
             with folder.blame_config(run_dir):
-                check(config)
                 prepare(config)
-                runs.append(configuration.built(config))
+                runs.append(configuration.build(config))
             refuse_edits(config, run_dir)  # also those of a process that had it until now
         return _run(Job(runs, folders, values, axis_of(values, runs)), output)
 

@@ -14,7 +14,6 @@ import numpy as np
 
 from hybrid_rl.errors import CheckpointError
 from hybrid_rl.files.atomic import open_own, write_text
-from hybrid_rl.files.reading import open_file
 from hybrid_rl.run.logs.records import Row, json_value
 
 
@@ -91,9 +90,9 @@ class RunLog:
         offset: [bytes] that `flush` returned then. Returns one line for each difference from the
         state at the checkpoint.
         """
-        self._file = open_own(self.path)
-        with open_file(self.path) as file:
-            whole = file.read(offset).rpartition(b"\n")
+        self._file = open_own(self.path, "a+b")
+        self._file.seek(0)
+        whole = self._file.read(offset).rpartition(b"\n")
         self._file.truncate(len(whole[0] + whole[1]))
         self._file.seek(0, os.SEEK_END)
         self._resumed = step
