@@ -46,6 +46,11 @@ def json_file(file: Path) -> dict[str, Any]:
     return _group(file, "JSON", json.loads)
 
 
+def json_if_there(file: Path) -> dict[str, Any]:
+    """As `json_file`; {} if there is no file."""
+    return json_file(file) if file.exists() else {}
+
+
 def yaml_file(file: Path) -> dict[str, Any]:
     """The group of keys in a YAML file."""
     return _group(file, "YAML", lambda content: yaml.load(content, Loader))

@@ -14,7 +14,7 @@ from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.core.lifting import is_identity
 from hybrid_rl.data.trained import save
 from hybrid_rl.errors import UsageError
-from hybrid_rl.files.reading import json_file
+from hybrid_rl.files.reading import json_if_there
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.run.saved import OBJECTIVES, Trained, load
@@ -133,8 +133,7 @@ def _description(folder: Path, trained: Trained, command: str, seed: int) -> dic
         "policy": OmegaConf.to_container(config.controllers.policy.policy),
     }
     parts |= {name: _anywhere(OmegaConf.to_container(config[name])) for name in named}
-    file = folder / "summary.json"
-    summary = json_file(file) if file.exists() else {}
+    summary = json_if_there(folder / "summary.json")
     return {
         **parts,
         **{"algo": config.algo, "seed": seed, "step": trained.step, "command": command},
@@ -145,7 +144,7 @@ def _description(folder: Path, trained: Trained, command: str, seed: int) -> dic
 
 def _evaluation(folder: Path, step: int, number: int) -> dict[str, Any] | None:
     """Mean and returns of a seed in evaluation_policy.json of this step, if there are."""
-    file = folder / "evaluation_policy.json"
-    if not file.exists() or (values := json_file(file)).get("step") != step:
+    values = json_if_there(folder / "evaluation_policy.json")
+    if values.get("step") != step:
         return None
     return {"mean": values["mean"][number], "returns": values["returns"][number]}
