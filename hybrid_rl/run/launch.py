@@ -191,6 +191,7 @@ def train_built(run: Run, output: Output) -> dict[str, Any]:
 
 def _begin(job: Job, output: Output) -> dict[str, Any]:
     """Run what is built in new folders."""
+    fits(job.runs)  # before a folder is made
     configs = [run.config for run in job.runs]
     logger = one_of("logger", configs[0].get("logger"), (None, "wandb"))
     if logger is not None and find_spec("wandb") is None:
