@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from hybrid_rl.errors import UsageError
-from hybrid_rl.files.reading import json_file, json_if_there, open_file, yaml_file
+from hybrid_rl.files.reading import json_file, open_file, yaml_file
 from hybrid_rl.run.logs.records import COORDINATES, WORD, arrays, flatten_keys, row_of
 from hybrid_rl.settings.complete import nearest
 
@@ -65,7 +65,7 @@ class RunFolder:
     @cached_property
     def summary(self) -> dict[str, Any]:
         """What summary.json holds; {} before there is one."""
-        return json_if_there(self.path / "summary.json")
+        return json_file(self.path / "summary.json", optional=True)
 
     def word(self, key: str, argument: str = "group") -> str:
         """The value at `key`, which `argument` names, as a word; of a part its class."""

@@ -21,7 +21,7 @@ from hybrid_rl.errors import MisfitError, PartError, UsageError, printable
 from hybrid_rl.files import targets as parts
 from hybrid_rl.files.atomic import write_text
 from hybrid_rl.files.lock import lock
-from hybrid_rl.files.reading import json_if_there, yaml_file
+from hybrid_rl.files.reading import json_file, yaml_file
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.settings.build import CONF
 from hybrid_rl.settings.values import SECTIONS, check
@@ -142,7 +142,7 @@ def _check_version(folder: Path, key: str, config: Mapping[str, Any]) -> None:
     """Raise UsageError if another minor version made the run."""
     summary = {}
     with suppress(UsageError):
-        summary = json_if_there(folder / "summary.json")
+        summary = json_file(folder / "summary.json", optional=True)
     version = config.get("version") or summary.get("versions", {}).get("hybrid_rl")
     if str(version).split(".")[:2] != __version__.split(".")[:2]:
         commit = summary.get("git_commit")
@@ -166,7 +166,7 @@ def blame_config(folder: Path) -> Iterator[None]:
 
 def members(folder: Path) -> dict[Path, dict[str, float]]:
     """The runs of the sweep in `folder`, and the values of each by key; {} if it holds none."""
-    columns = json_if_there(folder / SWEEP)
+    columns = json_file(folder / SWEEP, optional=True)
     rows = (dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True))
     return {folder / str(number): row for number, row in enumerate(rows)}
 

@@ -18,7 +18,7 @@ from omegaconf import DictConfig
 from hybrid_rl.errors import FAULTS, DivergenceError, UsageError, install
 from hybrid_rl.files.atomic import naming, refuse_link, write_text
 from hybrid_rl.files.lock import lock
-from hybrid_rl.files.reading import json_if_there
+from hybrid_rl.files.reading import json_file
 from hybrid_rl.networks import precision
 from hybrid_rl.run import folder, start
 from hybrid_rl.run.checkpoints import checkpoint
@@ -323,7 +323,7 @@ def _ends(configs: Sequence[DictConfig], folders: Sequence[Path]) -> list[dict[s
     """summary.json of each run; [] unless all are at their end, and have a checkpoint there."""
     summaries = []
     for config, run_dir in zip(configs, folders, strict=True):
-        summary = json_if_there(run_dir / "summary.json")
+        summary = json_file(run_dir / "summary.json", optional=True)
         if not summary.get("finished") or summary["total_steps"] < config.total_steps:
             return []
         if checkpoint.verify(run_dir / "checkpoints" / str(summary["total_steps"])):

@@ -14,7 +14,7 @@ from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.core.lifting import is_identity
 from hybrid_rl.data.trained import save
 from hybrid_rl.errors import UsageError
-from hybrid_rl.files.reading import json_if_there
+from hybrid_rl.files.reading import json_file
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.run.saved import OBJECTIVES, Trained, load
@@ -133,7 +133,7 @@ def _description(folder: Path, trained: Trained, command: str, seed: int) -> dic
         "policy": OmegaConf.to_container(config.controllers.policy.policy),
     }
     parts |= {name: _anywhere(OmegaConf.to_container(config[name])) for name in named}
-    summary = json_if_there(folder / "summary.json")
+    summary = json_file(folder / "summary.json", optional=True)
     return {
         **parts,
         **{"algo": config.algo, "seed": seed, "step": trained.step, "command": command},
@@ -144,7 +144,7 @@ def _description(folder: Path, trained: Trained, command: str, seed: int) -> dic
 
 def _evaluation(folder: Path, step: int, number: int) -> dict[str, Any] | None:
     """Mean and returns of a seed in evaluation_policy.json of this step, if there are."""
-    values = json_if_there(folder / "evaluation_policy.json")
+    values = json_file(folder / "evaluation_policy.json", optional=True)
     if values.get("step") != step:
         return None
     return {"mean": values["mean"][number], "returns": values["returns"][number]}
