@@ -147,18 +147,18 @@ def train(
         DivergenceError: if every learner reached NaN or infinity.
         CheckpointError: if a checkpoint could not be written or read.
     """
-    output = Output(on_row or (lambda row: None), progress)
+    output = Output(on_row or (lambda row: None), progress, interrupt.as_call)
     if isinstance(method, Agent):
         values: dict[str, Any] = {**settings}
         run = run_of(method, **values)
-        result = Result(launch.train_built(run, interrupt.as_call, output), run)
+        result = Result(launch.train_built(run, output), run)
     else:
         if settings:
             texts = ", ".join(f'"{key}={value}"' for key, value in settings.items())
             raise UsageError(f"train: keywords are for an agent; write train([{texts}, ...])")
         given = {} if isinstance(method, DictConfig) else typed_values(method)
         runs = members.load(method, config_dir)
-        result = Result(launch.train(runs, given, interrupt.as_call, output))
+        result = Result(launch.train(runs, given, output))
     if result["signal"] is not None:
         signal.raise_signal(result["signal"])
     if output.problem is not None:

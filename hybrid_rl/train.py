@@ -40,8 +40,8 @@ from hybrid_rl.settings.words import typed_values
 
 def _job(config: DictConfig, typed: Sequence[str]) -> dict[str, Any]:
     """One run of the command; returns what summary.json holds."""
-    runs, output = members.expand_sweep(config, typed), Output()
-    summary = launch.train(runs, typed_values(typed), interrupt.as_call, output)
+    runs, output = members.expand_sweep(config, typed), Output(handled=interrupt.as_call)
+    summary = launch.train(runs, typed_values(typed), output)
     run_dir = Path(summary["run_dir"])
     if summary["signal"] is None:
         from hybrid_rl.analysis import learning_curves  # imports matplotlib

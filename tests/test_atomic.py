@@ -20,7 +20,7 @@ from hybrid_rl.outside.robot_process import RobotProcess, report
 from hybrid_rl.outside.row_log import RowLog
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.logs.log import RunLog
-from hybrid_rl.run.logs.loggers import Begun, TensorBoard, WandB
+from hybrid_rl.run.logs.loggers import TensorBoard, WandB
 from hybrid_rl.types import Spec
 
 PACKAGE = Path(__file__).resolve().parents[1] / "hybrid_rl"
@@ -102,7 +102,7 @@ def process(run: Path) -> RobotProcess:
 
 
 def tensorboard(run: Path) -> None:
-    TensorBoard(Begun(run, [0, 1], {})).close()
+    TensorBoard(run, [0, 1]).close()
 
 
 WRITE = {  # what would be written, by the file or the folder that is a link
@@ -118,8 +118,8 @@ WRITE = {  # what would be written, by the file or the folder that is a link
     "metrics.jsonl": lambda run: RunLog(run, [0]).flush(),
     "tensorboard": tensorboard,
     "tensorboard/seed_0": tensorboard,
-    "wandb": lambda run: WandB(Begun(run, [0], {})).id_of(0),
-    "wandb/seed_0.id": lambda run: WandB(Begun(run, [0], {})).id_of(0),
+    "wandb": lambda run: WandB(run, [0], {}).id_of(0),
+    "wandb/seed_0.id": lambda run: WandB(run, [0], {}).id_of(0),
     "checkpoints": lambda run: checkpoint.save(run / "checkpoints", 5, {"a": np.ones(1)}, {}),
     "study.db": lambda run: refuse_link(run / "study.db"),
 }

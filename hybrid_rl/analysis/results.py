@@ -65,8 +65,7 @@ class RunFolder:
     @cached_property
     def summary(self) -> dict[str, Any]:
         """What summary.json holds; {} before there is one."""
-        file = self.path / "summary.json"
-        return json_file(file) if file.exists() else {}
+        return json_file(self.path / "summary.json", optional=True)
 
     def word(self, key: str, argument: str = "group") -> str:
         """The value at `key`, which `argument` names, as a word; of a part its class."""

@@ -27,16 +27,14 @@ from omegaconf import DictConfig, OmegaConf
 from hybrid_rl.cli import command, interrupt
 from hybrid_rl.errors import UsageError, relative
 from hybrid_rl.files.atomic import write_text
-from hybrid_rl.run import members as program
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.folder import members, new_folder, remove_empty
+from hybrid_rl.run.launch import built
 from hybrid_rl.run.logs.records import result_line
-from hybrid_rl.run.machine.jax_settings import prepare
-from hybrid_rl.run.start import build_new_run
+from hybrid_rl.run.members import expand_sweep
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings import words
 from hybrid_rl.settings.compose import UNCOMPOSED, explain
-from hybrid_rl.settings.values import check
 from hybrid_rl.settings.words import forced, quoted, typed
 
 Result = dict[str, Any]  # of a job: code, line
@@ -162,13 +160,9 @@ class Sweeper:
         local = here(self.config.hydra)
         if not local and config.physics in ACCELERATED:
             config.physics = "native"
-        swept, runs = program.expand_sweep(config, job), []
-        for own in (member.config for member in swept if member.config.resume is None):
-            check(own)
-            prepare(own)  # first: a check of the user's world initialises JAX
-            runs.append(build_new_run(own)[0])
-        if len(runs) > 1:
-            program.axis_of([member.values for member in swept], runs)
+        swept = expand_sweep(config, job)
+        if config.resume is None:
+            built(swept)
 
 
 def _folders(

@@ -41,9 +41,9 @@ def text(file: Path) -> str:
         raise UsageError(f"{file}: is not text (UTF-8)") from error
 
 
-def json_file(file: Path) -> dict[str, Any]:
-    """The group of keys in a file of JSON."""
-    return _group(file, "JSON", json.loads)
+def json_file(file: Path, optional: bool = False) -> dict[str, Any]:
+    """The group of keys in a file of JSON; optional: {} if there is no file."""
+    return {} if optional and not file.exists() else _group(file, "JSON", json.loads)
 
 
 def yaml_file(file: Path) -> dict[str, Any]:

@@ -24,7 +24,11 @@ from hybrid_rl.protocols import Controller
 from hybrid_rl.types import Params, Spec
 
 OPSET, IR = 17, 8  # of ONNX: runtimes refuse files that are newer than they are
-OPERATORS = {"relu": "Relu", "sin": "Sin", "tanh": "Tanh", "elu": "Elu"}  # of an activation
+FUNCTIONS = {  # lines of ONNX from z to a: those of an activation or a squashing
+    **{name.lower(): f"{{a}} = {name} ({{z}})" for name in ("Relu", "Sin", "Tanh", "Elu")},
+    "silu": "{a}_gate = Sigmoid ({z}) {a} = Mul ({z}, {a}_gate)",
+    "clip": "{a} = Clip ({z}, low, high)",
+}
 
 
 def program(
@@ -86,48 +90,31 @@ def layers(spec: Spec, controller: Controller, params: Params) -> Perceptron:
 def save_onnx(out: Path, task: str, spec: Spec, net: Perceptron) -> None:
     """Write OUT, a model of ONNX: obs [N, o] -> action [N, m], float32."""
     onnx: Any = import_module("onnx")
-    helper, nodes = onnx.helper, []
-
-    def node(kind: str, inputs: list[str], output: str, **options: Any) -> str:
-        nodes.append(helper.make_node(kind, inputs, [output], **options))
-        return output
-
-    arrays = {"mean": net.mean, "scale": net.scale}
-    arrays |= {"low": np.float32(-1), "high": np.float32(1)}
-    node("Sub", ["obs", "mean"], "centred")
-    x = node("Div", ["centred", "scale"], "scaled")
+    arrays = {"mean": net.mean, "scale": net.scale, "low": -1, "high": 1}
+    lines, x = ["centred = Sub (obs, mean)", "scaled = Div (centred, scale)"], "scaled"
     for i, (weights, bias) in enumerate(zip(net.weights, net.biases, strict=True), 1):
         arrays |= {f"W{i}": weights, f"b{i}": bias}
-        x = node("Gemm", [x, f"W{i}", f"b{i}"], f"z{i}")
-        function = net.squash if i == len(net.weights) else net.activation
+        lines.append(f"z{i} = Gemm ({x}, W{i}, b{i})")
         last = i == len(net.weights)
-        x = _function(node, function, x, "action" if last and net.span is None else f"a{i}")
+        x = "action" if last and net.span is None else f"a{i}"
+        function = net.squash if last else net.activation
+        lines.append(FUNCTIONS[function].format(z=f"z{i}", a=x))
     if net.span is not None:
         arrays |= dict(zip(("middle", "half"), net.span, strict=True))
-        node("Add", [node("Mul", [x, "half"], "swing"), "middle"], "action")
-    used = {name for each in nodes for name in each.input}
-    kept = [
+        lines += [f"swing = Mul ({x}, half)", "action = Add (swing, middle)"]
+    ends = f"(float[N, {int(spec.obs)}] obs) => (float[N, {int(spec.act)}] action)"
+    graph = onnx.parser.parse_graph(f"policy {ends} {{ {' '.join(lines)} }}")
+    used = {name for node in graph.node for name in node.input}
+    graph.initializer.extend(
         onnx.numpy_helper.from_array(np.asarray(value, np.float32), name)
         for name, value in arrays.items()
         if name in used
-    ]
-    ends = [
-        [helper.make_tensor_value_info(name, onnx.TensorProto.FLOAT, ["N", size])]
-        for name, size in (("obs", int(spec.obs)), ("action", int(spec.act)))
-    ]
-    graph = helper.make_graph(nodes, "policy", *ends, kept)
-    opset = [helper.make_opsetid("", OPSET)]
-    model = helper.make_model(graph, ir_version=IR, opset_imports=opset, producer_name="hybrid_rl")
-    helper.set_model_props(model, {"task": task, "dt": f"{float(spec.dt):g}"})
+    )
+    opset = [onnx.helper.make_opsetid("", OPSET)]
+    model = onnx.helper.make_model(
+        graph, ir_version=IR, opset_imports=opset, producer_name="hybrid_rl"
+    )
+    onnx.helper.set_model_props(model, {"task": task, "dt": f"{float(spec.dt):g}"})
     onnx.checker.check_model(model, full_check=True)
     with replacing(out) as draft:
         draft.write_bytes(model.SerializeToString())
-
-
-def _function(node: Any, function: str, z: str, out: str) -> str:
-    """The nodes of an activation or a squashing of z."""
-    if function == "silu":
-        return node("Mul", [z, node("Sigmoid", [z], f"{out}_gate")], out)
-    if function == "clip":
-        return node("Clip", [z, "low", "high"], out)
-    return node(OPERATORS[function], [z], out)

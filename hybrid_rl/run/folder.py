@@ -6,7 +6,6 @@ overrides. A part that occurs several times, such as a model that both the plann
 have, is written once and referenced by a YAML anchor.
 """
 
-import itertools
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
@@ -50,10 +49,10 @@ def claim_folders(configs: Sequence[DictConfig]) -> Iterator[list[Path]]:
                 with open_dict(config):
                     config.run_dir = str(folder)
             stack.enter_context(lock(folder, "run_dir"))
-        for folder, name in itertools.product([parent, *folders], ("config.yaml", SWEEP)):
-            if (folder / name).exists():
-                line = f"holds a run already; choose another, or resume={parent}"
-                raise UsageError(f"run_dir={parent}: {line}")
+        files = (run / name for run in (parent, *folders) for name in ("config.yaml", SWEEP))
+        if any(map(Path.exists, files)):
+            line = f"holds a run already; choose another, or resume={parent}"
+            raise UsageError(f"run_dir={parent}: {line}")
         yield folders
 
 
@@ -143,7 +142,7 @@ def _check_version(folder: Path, key: str, config: Mapping[str, Any]) -> None:
     """Raise UsageError if another minor version made the run."""
     summary = {}
     with suppress(UsageError):
-        summary = json_file(folder / "summary.json")
+        summary = json_file(folder / "summary.json", optional=True)
     version = config.get("version") or summary.get("versions", {}).get("hybrid_rl")
     if str(version).split(".")[:2] != __version__.split(".")[:2]:
         commit = summary.get("git_commit")
@@ -167,9 +166,7 @@ def blame_config(folder: Path) -> Iterator[None]:
 
 def members(folder: Path) -> dict[Path, dict[str, float]]:
     """The runs of the sweep in `folder`, and the values of each by key; {} if it holds none."""
-    if not (folder / SWEEP).exists():
-        return {}
-    columns = json_file(folder / SWEEP)
+    columns = json_file(folder / SWEEP, optional=True)
     rows = (dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True))
     return {folder / str(number): row for number, row in enumerate(rows)}
 

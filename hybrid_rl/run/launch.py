@@ -5,8 +5,8 @@ A `Job` has its runs in their folders: settings, records and checkpoints, up to 
 
 import json
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import AbstractContextManager, ExitStack
-from dataclasses import dataclass, field
+from contextlib import AbstractContextManager, ExitStack, nullcontext
+from dataclasses import dataclass, field, replace
 from importlib.util import find_spec
 from itertools import cycle
 from pathlib import Path
@@ -25,7 +25,7 @@ from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.checkpoints.store import Shelf
 from hybrid_rl.run.logs.log import RunLog
 from hybrid_rl.run.logs.progress import Progress
-from hybrid_rl.run.logs.records import Row, changes, flatten_keys
+from hybrid_rl.run.logs.records import Row, flatten_keys
 from hybrid_rl.run.machine import memory, provenance
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.run.members import Member, axis_of, joined, loop_of
@@ -39,9 +39,8 @@ from hybrid_rl.settings.words import plain
 from hybrid_rl.training.loop import Axis, Loop
 from hybrid_rl.version import BEGAN
 
-OF_A_SESSION = ("resume", "total_steps", "run_dir", "version", "logger")
-OF_A_SESSION += ("compile_cache", "precision", "recipe", "config_dir")
 FREE = ("resume", "total_steps", "compile_cache", "precision")  # keys of a resumed run
+MAY_DIFFER = (*FREE, "run_dir", "logger", "random_steps")  # the last may follow from total_steps
 ONLY = "with resume only total_steps and precision can be changed"
 
 Handler = Callable[[Callable[[int], None]], AbstractContextManager]
@@ -49,15 +48,16 @@ Handler = Callable[[Callable[[int], None]], AbstractContextManager]
 
 @dataclass
 class Output:
-    """Where a run reports, besides its folder: the console, and a function of the user's.
+    """What surrounds a run, besides its folder: the console, a function of the user's, signals.
 
     The function is called with every new row, a dictionary. Where it returns False, `ask` is called
     with 0, and it gets the rows up to the end. Where it raises, also; `problem` is what it raised,
-    and it is not called again.
+    and it is not called again. `handled(f)` is a context in which the first signal calls f(number).
     """
 
     function: Callable[[Row], Any] = lambda row: None
     progress: bool = True
+    handled: Handler = nullcontext
     ask: Callable[[int], None] = lambda number: None
     problem: BaseException | None = None
 
@@ -76,9 +76,10 @@ class Job:
     """K runs, their folders, what sets each apart, and the numbers in which they differ."""
 
     runs: Sequence[Run]
-    folders: Sequence[Path]
+    folders: Sequence[Path] = ()  # once there are such
     values: Sequence[Mapping[str, float]] = ({},)  # [K] key -> value
     axis: Axis = field(default_factory=Axis)
+    start: Start | None = None  # what the learners of new runs begin with
 
     def loop(self) -> Loop:
         """The loop that trains all learners."""
@@ -156,57 +157,50 @@ def written(config: DictConfig) -> dict[str, Any]:
     return flatten_keys({key: value for key, value in plain(config).items() if key not in others})
 
 
-def train(
-    members: Sequence[Member], given: Mapping[str, str], handled: Handler, output: Output
-) -> dict[str, Any]:
+def train(members: Sequence[Member], given: Mapping[str, str], output: Output) -> dict[str, Any]:
     """Run `members`, one or those of a sweep, to their end, or to a signal.
 
     Returns what summary.json holds; of a sweep that of all its runs, and each of them.
 
     given: the overrides of the user, key -> value; of a resumed run, whose settings come from its
-    folder, only total_steps and precision may differ. handled: `handled(f)` is a context in which
-    the first signal calls f(number).
+    folder, only total_steps and precision may differ.
     """
-    first = members[0].config
-    if first.resume is not None:
-        return _resume(members, given, handled, output)
+    if members[0].config.resume is not None:
+        return _resume(members, given, output)
+    return _begin(built(members), output)
+
+
+def built(members: Sequence[Member]) -> Job:
+    """New runs, without folders."""
     for member in members:
         check(member.config)
-    prepare(first)  # before a check of the user's world initialises JAX's devices
-    made = [start.build_new_run(member.config) for member in members]
-    return _begin(members, [run for run, _ in made], handled, output, [begin for _, begin in made])
+        prepare(member.config)  # before a check of the user's world initialises JAX's devices
+    runs, starts = zip(*(start.build_new_run(member.config) for member in members), strict=True)
+    values = [member.values for member in members]
+    return Job(runs, (), values, axis_of(values, runs), start.joined(starts))
 
 
-def train_built(run: Run, handled: Handler, output: Output) -> dict[str, Any]:
+def train_built(run: Run, output: Output) -> dict[str, Any]:
     """Run what is built, in a new folder or on from the checkpoints in `config.resume`."""
     if run.config.resume is None:
-        return _begin([Member(run.config)], [run], handled, output, [None])
+        return _begin(Job([run]), output)
     run_dir = Path(str(run.config.resume))
     with lock(run_dir, "run_dir"):
-        return _run(Job([run], [run_dir]), handled, output)
+        return _run(Job([run], [run_dir]), output)
 
 
-def _begin(
-    members: Sequence[Member],
-    runs: Sequence[Run],
-    handled: Handler,
-    output: Output,
-    starts: Sequence[Start | None],
-) -> dict[str, Any]:
-    """Run `runs` in new folders."""
-    values = [member.values for member in members]
-    axis, first = axis_of(values, runs), start.joined(starts)
-    fits(runs)
-    logger = one_of("logger", members[0].config.get("logger"), (None, "wandb"))
+def _begin(job: Job, output: Output) -> dict[str, Any]:
+    """Run what is built in new folders."""
+    fits(job.runs)  # before a folder is made
+    configs = [run.config for run in job.runs]
+    logger = one_of("logger", configs[0].get("logger"), (None, "wandb"))
     if logger is not None and find_spec("wandb") is None:
         raise UsageError(f"logger=wandb: not installed; {install('wandb')}")
-    with folder.claim_folders([member.config for member in members]) as folders:
-        return _run(Job(runs, folders, values, axis), handled, output, first)
+    with folder.claim_folders(configs) as folders:
+        return _run(replace(job, folders=folders), output)
 
 
-def _resume(
-    wanted: Sequence[Member], given: Mapping[str, str], handled: Handler, output: Output
-) -> dict[str, Any]:
+def _resume(wanted: Sequence[Member], given: Mapping[str, str], output: Output) -> dict[str, Any]:
     """Continue the run, or the runs of a sweep, in the folder `resume`, as `train`."""
     parent = Path(str(wanted[0].config.resume))
     swept = folder.members(parent) or {parent: {}}
@@ -216,8 +210,7 @@ def _resume(
     given = {key.removeprefix("sweep."): value for key, value in given.items()}
     typed = zip(folders, cycle(wanted), strict=False)  # one, or one for each
     configs = [_settings(member.config, run_dir, given) for run_dir, member in typed]
-    done = [_done(config, run_dir) for config, run_dir in zip(configs, folders, strict=True)]
-    if ends := [end for end in done if end is not None and None not in done]:
+    if ends := _ends(configs, folders):
         if output.progress:
             line = f"already finished ({ends[0]['total_steps']:,} steps)"
             print(f"{parent}: {line}; raise total_steps to continue")
@@ -227,11 +220,10 @@ def _resume(
         for config, run_dir in zip(configs, folders, strict=True):
             stack.enter_context(lock(run_dir, "resume"))
             with folder.blame_config(run_dir):
-                check(config)
                 prepare(config)
-                runs.append(configuration.built(config))
+                runs.append(configuration.build(config))
             refuse_edits(config, run_dir)  # also those of a process that had it until now
-        return _run(Job(runs, folders, values, axis_of(values, runs)), handled, output)
+        return _run(Job(runs, folders, values, axis_of(values, runs)), output)
 
 
 def fits(runs: Sequence[Run]) -> str:
@@ -241,8 +233,8 @@ def fits(runs: Sequence[Run]) -> str:
     return memory.replay(runs[0], len(runs) * len(runs[0].seeds))
 
 
-def _run(job: Job, handled: Handler, output: Output, first: Start | None = None) -> dict[str, Any]:
-    """Run a session; first: what the learners begin with."""
+def _run(job: Job, output: Output) -> dict[str, Any]:
+    """Run a session."""
     run, config = job.runs[0], job.runs[0].config
     with ExitStack() as stack:
         loop = job.loop()
@@ -254,18 +246,18 @@ def _run(job: Job, handled: Handler, output: Output, first: Start | None = None)
         named = zip(job.folders, job.axis.names, strict=True)
         lines = [f"{label}{name and ' '}{name}: run folder {run_dir}" for run_dir, name in named]
         progress.note("\n".join([*lines, fits(job.runs), *run.notes]))
-        values: dict[str, Any] = {name: config[name] for name in Schedule.__dataclass_fields__}
-        values["eval_modes"] = tuple(m for m in config.eval_modes if m in config.controllers)
-        session = Session(loop, run.controllers, Schedule(**values), shelf, progress)
+        plan = Schedule(**{name: config[name] for name in Schedule.__dataclass_fields__})
+        evaluated = {m: run.controllers[m] for m in config.eval_modes if m in run.controllers}
+        session = Session(loop, evaluated, plan, shelf, progress)
         if config.resume is None:
-            session.begin(first)
+            session.begin(job.start)
         else:
             with folder.blame_config(job.folders[0]):
                 session.resume()
         session.compile()  # before anything is written: a start that fails leaves nothing
         job.write_settings()  # also of a resumed run, which may be longer now
         output.ask = session.ask
-        with handled(session.ask):
+        with output.handled(session.ask):
             try:
                 session.run()
                 if loop.fault is not None:
@@ -290,8 +282,8 @@ def _settings(config: DictConfig, run_dir: Path, given: Mapping[str, str]) -> Di
     old = folder.read_trained(run_dir, "resume")
     typed = [key for key in given if key not in FREE]
     if typed and (changed := _changes(written(old), written(config))):
-        differ = [key for key in typed if any(line.startswith(f"{key} ") for line in changed)]
-        key = (differ or typed)[0]
+        differ = (key for key in typed if any(line.startswith(f"{key} ") for line in changed))
+        key = next(differ, typed[0])
         raise UsageError(f"{key}={given[key]}: {ONLY}; resume={run_dir} has its own")
     if "total_steps" in given:
         steps = whole("total_steps", config.total_steps)
@@ -314,16 +306,27 @@ def refuse_edits(config: DictConfig, run_dir: Path) -> None:
 
 
 def _changes(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
-    """Lines about the settings that differ, of those that stay for the whole run."""
-    free = (*OF_A_SESSION, "random_steps")  # which may follow from total_steps
-    return changes(*({k: v for k, v in each.items() if k not in free} for each in (then, now)))
+    """Lines "KEY was A and is B", by full keys, of the settings that stay for the whole run.
+
+    A part occurs several times in a configuration: its shortest key names a change.
+    """
+    changed: dict[str, str] = {}
+    for key in sorted({*now, *then} - {*MAY_DIFFER}, key=lambda key: (key.count("."), key)):
+        before, after = then.get(key, "absent"), now.get(key, "absent")
+        if before != after:
+            line = f"was {before} and is {after}"
+            changed.setdefault(f"{key.rpartition('.')[2]} {line}", f"{key} {line}")
+    return list(changed.values())
 
 
-def _done(config: DictConfig, run_dir: Path) -> dict[str, Any] | None:
-    """summary.json of a run that has reached its end and has a checkpoint there; None else."""
-    file = run_dir / "summary.json"
-    summary = json_file(file) if file.exists() else {"finished": False}
-    if not summary["finished"] or summary["total_steps"] < config.total_steps:
-        return None
-    newest = run_dir / "checkpoints" / str(summary["total_steps"])
-    return summary | {"run_dir": str(run_dir)} if checkpoint.verify(newest) is None else None
+def _ends(configs: Sequence[DictConfig], folders: Sequence[Path]) -> list[dict[str, Any]]:
+    """summary.json of each run; [] unless all are at their end, and have a checkpoint there."""
+    summaries = []
+    for config, run_dir in zip(configs, folders, strict=True):
+        summary = json_file(run_dir / "summary.json", optional=True)
+        if not summary.get("finished") or summary["total_steps"] < config.total_steps:
+            return []
+        if checkpoint.verify(run_dir / "checkpoints" / str(summary["total_steps"])):
+            return []
+        summaries.append(summary | {"run_dir": str(run_dir)})
+    return summaries

@@ -95,10 +95,10 @@ class OnlineLearner:
         self.decisions = self._began = decisions
         self._learner.read = self._learner.learned = decisions
         self._pending: tuple[np.ndarray, np.ndarray] | None = None
-        self._stretch = self._episode = 0
+        self._episode = 0
         self._past = np.zeros((PENDING + 1, self._spec.act), np.float32)  # sent, the newest first
         self._error: Exception | None = None
-        self._handed, self._closed = 0.0, False
+        self._closed = False
         self._decide.take(self._newest())
         if self._mode == "background":
             self._thread = threading.Thread(target=self._follow, daemon=True)
@@ -170,8 +170,7 @@ class OnlineLearner:
         self._past = np.concatenate((row["action"][None], self._past[:-1]))
         row["sent"], row["interval"] = self._past, self._spec.dt
         row["times"] = -self._spec.dt * np.arange(len(self._past))
-        row["number"], row["stretch"] = self.decisions, self._stretch
-        row["episode"], row["time"] = self._episode, time.time()
+        row["stretch"] = row["episode"] = self._episode
         self._rows[self.decisions], self._pending = row, None
         self.decisions += 1
         ended = bool(terminated or truncated)
@@ -185,19 +184,20 @@ class OnlineLearner:
     def interrupt(self) -> None:
         """The episode was broken off without an outcome: the last action is forgotten."""
         self._pending = None
-        self._stretch, self._episode = self._stretch + 1, self._episode + 1
+        self._episode += 1
         self._past = np.zeros_like(self._past)
         self._decide.begin()
 
     def _follow(self) -> None:
         """Learn in the background."""
+        handed = 0.0
         try:
             while not self._closed:
                 if not self._advance():
                     time.sleep(1e-3)
-                if time.monotonic() - self._handed > HANDOVER_S:
+                if time.monotonic() - handed > HANDOVER_S:
                     self._decide.take(self._newest())
-                    self._handed = time.monotonic()
+                    handed = time.monotonic()
         except Exception as error:  # the caller's thread raises it
             self._error = error
 

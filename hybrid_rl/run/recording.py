@@ -133,8 +133,7 @@ def _description(folder: Path, trained: Trained, command: str, seed: int) -> dic
         "policy": OmegaConf.to_container(config.controllers.policy.policy),
     }
     parts |= {name: _anywhere(OmegaConf.to_container(config[name])) for name in named}
-    file = folder / "summary.json"
-    summary = json_file(file) if file.exists() else {}
+    summary = json_file(folder / "summary.json", optional=True)
     return {
         **parts,
         **{"algo": config.algo, "seed": seed, "step": trained.step, "command": command},
@@ -145,7 +144,7 @@ def _description(folder: Path, trained: Trained, command: str, seed: int) -> dic
 
 def _evaluation(folder: Path, step: int, number: int) -> dict[str, Any] | None:
     """Mean and returns of a seed in evaluation_policy.json of this step, if there are."""
-    file = folder / "evaluation_policy.json"
-    if not file.exists() or (values := json_file(file)).get("step") != step:
+    values = json_file(folder / "evaluation_policy.json", optional=True)
+    if values.get("step") != step:
         return None
     return {"mean": values["mean"][number], "returns": values["returns"][number]}

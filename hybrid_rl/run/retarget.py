@@ -29,7 +29,7 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 from jax import Array
-from omegaconf import DictConfig, OmegaConf, open_dict
+from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl.envs.adapters.robot import Outside, Robot
 from hybrid_rl.envs.adapters.unstepped import ALONE
@@ -41,7 +41,7 @@ from hybrid_rl.run.saved import Trained, load_named
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings.complete import LACKING, complete, refusal, select
 from hybrid_rl.settings.groups import search_path
-from hybrid_rl.settings.words import forced, plain, value_of
+from hybrid_rl.settings.words import forced, plain, typed_values, value_of
 from hybrid_rl.training.contract import check_acting
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.history import acting as acting_in
@@ -93,7 +93,7 @@ def retargeted(
     if not worlds:
         return now
     assert now.config is not None
-    episode = disturbed(now.config, dict(text.split("=", 1) for text in worlds))
+    episode = disturbed(now.config, typed_values(worlds))
     episode, acting = acting_in(episode, now.controllers)
     return replace(now, episode=episode, controllers=acting)
 
@@ -104,10 +104,10 @@ def aimed(
     """The result of `retargeted` before a policy learns, and how it will learn."""
     if not overrides:
         return trained, None
-    config: Any = OmegaConf.to_container(trained.config, resolve=True)
+    config = plain(trained.config, resolve=True)
     named = {text.partition("=")[0]: text for text in overrides}
     if "controllers" in config and all(key.startswith("planner.") for key in named):
-        return _adjusted(trained, OmegaConf.create(config), overrides), None
+        return _adjusted(trained, overrides), None
     words = [*overrides, *([search_path(config_dir)] if config_dir else [])]
     found = plain(configuration.composed("retarget", forced(words, GROUPS)))
     composed = {**dict.fromkeys(configuration.PAID), **found}
@@ -138,11 +138,11 @@ def aimed(
     return now, before
 
 
-def _adjusted(trained: Trained, config: Any, overrides: Sequence[str]) -> Trained:
+def _adjusted(trained: Trained, overrides: Sequence[str]) -> Trained:
     """`trained` with other values of keys of the planner that acts in it, planner.KEY=VALUE."""
-    for text in overrides:
-        key, _, value = text.partition("=")
-        OmegaConf.update(config, key.replace("planner", "controllers.full", 1), value_of(value))
+    assert trained.config is not None
+    acting = [text.replace("planner", "controllers.full", 1) for text in overrides]
+    config = _with(trained.config, typed_values(acting))
     try:
         episode, controllers, _ = configuration.acting(config)
     except UsageError as error:
@@ -216,9 +216,12 @@ def _priced(config: dict[Any, Any], limit: Any) -> bool:
 
 def disturbed(config: DictConfig, changes: Mapping[str, str]) -> Episode:
     """The episodes of `config` with other values of env.KEY and episode.KEY."""
-    changed = config.copy()
-    OmegaConf.set_readonly(changed, False)
-    with open_dict(changed):
-        for key, value in changes.items():
-            OmegaConf.update(changed, key, value_of(value))
-    return configuration.episodes(changed)
+    return configuration.episodes(_with(config, changes))
+
+
+def _with(config: DictConfig, changes: Mapping[str, str]) -> DictConfig:
+    """A copy of `config` with other values, as typed, at these keys."""
+    changed: Any = OmegaConf.create(plain(config, resolve=True))
+    for key, value in changes.items():
+        OmegaConf.update(changed, key, value_of(value))
+    return changed

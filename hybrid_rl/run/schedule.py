@@ -15,9 +15,7 @@ class Schedule:
     log_every: int
     eval_every: int
     eval_episodes: int
-    eval_modes: tuple[str, ...]
     checkpoint_every: int
-    checkpoint_replay: bool
 
     @property
     def _marks(self) -> tuple[int, ...]:

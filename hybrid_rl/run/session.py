@@ -35,7 +35,7 @@ class Session:
     """One run: `begin` or `resume`, then `compile`, then `run`."""
 
     loop: Loop
-    controllers: Mapping[str, Controller]  # mode -> controller without exploration
+    controllers: Mapping[str, Controller]  # to evaluate: mode -> controller without exploration
     schedule: Schedule
     shelf: Shelf  # its folders
     progress: Progress
@@ -81,14 +81,14 @@ class Session:
             self.state = self.loop.init()
         if start is not None:
             self.state = self.loop.on_devices(start.given(self.state))
-            self.record.unevaluated = bool(self.schedule.eval_modes)
+            self.record.unevaluated = bool(self.controllers)
             self.progress.note(start.line)
 
     def resume(self) -> None:
         """Start from the newest sound checkpoint."""
         self.state, self.record, notes = self.shelf.restore()
         self.progress.update(self.step, {}, say=False)
-        if not self.schedule.checkpoint_replay:
+        if not self.shelf.replay:
             self.loop.agent = replace(self.loop.agent, first_update=self.step)
             notes += ["no replay memory in checkpoints: it continues, but not bit for bit"]
         self.saved = self.step, self.record.unevaluated
@@ -104,9 +104,8 @@ class Session:
             import orbax.checkpoint  # noqa: F401  # 1 s, too long for a checkpoint at a signal
 
             began = perf_counter()
-            modes = {mode: self.controllers[mode] for mode in self.schedule.eval_modes}
-            params = self.loop.params(self.state)
-            self.evaluations = Evaluations(self.loop, modes, self.schedule.eval_episodes, params)
+            given = self.controllers, self.schedule.eval_episodes, self.loop.params(self.state)
+            self.evaluations = Evaluations(self.loop, *given)
             self.program = self.loop.compile(self.state)
             memory.check(self.loop, self.program)
             self.evaluations.wait()
@@ -157,7 +156,7 @@ class Session:
                 speed.add(rounds * worlds * self.left, took)
         self._record(metrics, start)
         due = plan.due(plan.eval_every, self.step, worlds)
-        self.record.unevaluated = bool(plan.eval_modes) and due
+        self.record.unevaluated = bool(self.controllers) and due
         self._show({}, say=False if self.record.unevaluated else None)
 
     def _record(self, metrics: records.Metrics, start: int) -> None:
@@ -171,9 +170,7 @@ class Session:
         for row in episodes:
             pair = (row["step"], float(row["train/return"]))
             self.record.returns[row["learner"]].append(pair)
-        rows = sorted(episodes + ended, key=lambda row: (row["step"], row["learner"]))
-        self.shelf.write(rows, self.wall_s)
-        self._continue(bool(infinite))
+        self._write(episodes + ended, repair=bool(infinite))
         self.record.sums = records.added(self.record.sums, metrics)
         if self.schedule.row_due(self.step, worlds):
             learners = len(self.loop.seeds)
@@ -208,8 +205,7 @@ class Session:
         ended = self._end(infinite)
         left = {s: o for s, o in enumerate(outcomes) if s not in self.record.ends}
         rows_left = [{"step": self.step, "learner": s} | each for s, each in left.items()]
-        self.shelf.write(sorted(rows_left + ended, key=lambda row: row["learner"]), self.wall_s)
-        self._continue(bool(ended))
+        self._write(rows_left + ended, repair=bool(ended))
         result = next(key for key in RETURNS if key in outcomes[0])
         for s, outcome in left.items():
             self.record.final_eval[s] = outcome[result]
@@ -232,12 +228,14 @@ class Session:
             self.progress.note(f"{line}; it ends here, the others continue")
         return rows
 
-    def _continue(self, repair: bool) -> None:
-        """Raise DivergenceError if no learner is left; `repair` those that have ended.
+    def _write(self, rows: Sequence[Row], repair: bool) -> None:
+        """Write rows; raise DivergenceError if no learner is left; `repair` those that have ended.
 
         The program computes all learners together, so one that has ended is still computed, from
         the state of its last sound checkpoint, or its initial state.
         """
+        rows = sorted(rows, key=lambda row: (row["step"], row["learner"]))
+        self.shelf.write(rows, self.wall_s)
         if not self.left:
             ends = list(self.record.ends.values())
             raise DivergenceError(failure_line(ends, 0, self.shelf.newest))
@@ -248,8 +246,7 @@ class Session:
 
     def _save(self) -> None:
         """Write a checkpoint."""
-        self.shelf.write(self._end(unsound(self.state.learners, self.step)), self.wall_s)
-        self._continue(True)
+        self._write(self._end(unsound(self.state.learners, self.step)), repair=True)
         now = replace(self.record, wall_s=self.wall_s)
         with self.progress.doing("saving"):
             self.shelf.save(self.state, now)

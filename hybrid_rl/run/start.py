@@ -7,9 +7,8 @@ true in the new run, and imagined decisions only where nothing has changed.
 """
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -53,8 +52,7 @@ def add_recipe(texts: Sequence[str], config_dir: str | Path | None = None) -> li
         )
     source = Path(str(overrides.value_of(given["run"])))
     words = [text for text in (*_recipe(source, config_dir), *FRESH) if name(text) not in given]
-    options = [text for text in texts if text.startswith("-")]
-    return [*options, *words, *(text for text in texts if text not in options)]
+    return [*words, *texts]
 
 
 def _recipe(run_dir: Path, config_dir: str | Path | None) -> list[str]:
@@ -96,9 +94,8 @@ def joined(starts: Sequence[Start | None]) -> Start | None:
     known = [start for start in starts if start is not None]
     if not known:
         return None
-    memories = [start.memory for start in known if start.memory is not None]
-    memory = join(*memories) if memories else None
-    return Start(join(*(start.learners for start in known)), memory, known[0].line)
+    learners, memory = join(*((start.learners, start.memory) for start in known))
+    return Start(learners, memory, known[0].line)
 
 
 def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:
@@ -114,15 +111,16 @@ def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:
         raise UsageError(f"pretrain={config.pretrain}: what run={source} has learned is kept")
     numbers = _numbers(config, then, source)
     run = configuration.built(config)
+    holds, why = _remembers(run.agent.episode, config, then)
     try:
         seeds = range(then.seed, then.seed + then.num_seeds)
-        read = partial(read_parts, source / "checkpoints", run.agent, seeds)
-        step, state, _, notes = read(["learners"])
+        wanted = ["learners", "memory"] if holds else ["learners"]
+        step, state, _, notes = read_parts(source / "checkpoints", run.agent, seeds, wanted)
     except MisfitError as error:
         line = f"its parameters do not fit: {str(error).partition(': ')[2]}"
         raise UsageError(f"run={source}: {line}") from error
-    memory, why = _memory(run.agent, config, then, partial(read, ["memory"], step))
     demonstrated, remembered = run.agent.replay.num_demonstrated(run.agent.num_envs), 0
+    memory = state.memory
     words = f"memory: {'the demonstrations alone' if demonstrated else 'empty'}, since {why}"
     if memory is not None:
         filled = min(int(memory.count.min()), memory.rows.shape[1])
@@ -159,20 +157,18 @@ def _flat(config: DictConfig, *names: str) -> dict[str, Any]:
     return {key: value for key, value in flatten_keys(chosen).items() if ".world." not in key}
 
 
-def _memory(
-    agent: Agent, config: DictConfig, then: DictConfig, read: Callable[[], tuple[Any, ...]]
-) -> tuple[Any, str]:
-    """The memory [S', ...] of what `read` reads if it is true in the new run, and a word on it."""
+def _remembers(episode: Episode, config: DictConfig, then: DictConfig) -> tuple[bool, str]:
+    """Whether the memory of a run is true in the new one, and a word on it."""
     before, now = (_flat(made, *WORLD) for made in (then, config))
     differ = [key for key in {**before, **now} if before.get(key) != now.get(key)]
     if differ := [key for key in differ if key not in PASSING]:
-        return None, f"{_listed(differ[:3])} differ{'' if differ[1:] else 's'}"
+        return False, f"{_listed(differ[:3])} differ{'' if differ[1:] else 's'}"
     if not then.checkpoint_replay:
-        return None, "checkpoints of that run hold none"
+        return False, "checkpoints of that run hold none"
     same = _flat(then, "reward") == _flat(config, "reward")
-    if not same and not _follows(agent.episode):
-        return None, "reward differs"
-    return read()[1].memory, "" if same else RELABELLED
+    if not same and not _follows(episode):
+        return False, "reward differs"
+    return True, "" if same else RELABELLED
 
 
 def _follows(episode: Episode) -> bool:

@@ -80,7 +80,7 @@ def test_a_call_takes_about_a_second_and_a_half_whatever_the_speed():
 
 
 def test_a_call_ends_at_marks_and_where_decisions_change():
-    plan = Schedule(1000, 500, 300, 1, (), 1000, True)
+    plan = Schedule(1000, 500, 300, 1, 1000)
     assert [plan.until(step, {120, 0}) for step in (0, 120, 299, 300, 990)] == [
         *(120, 300, 300, 500, 1000),
     ]

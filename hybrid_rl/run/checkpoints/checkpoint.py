@@ -170,15 +170,14 @@ def _refusal(folder: Path, step: int, problem: BaseException) -> str:
 
 def list_files(folder: Path) -> None:
     """List all files below `folder`, then force files and folders to the disk."""
-    files = sorted(path for path in folder.rglob("*") if path.is_file())
+    below, manifest = sorted(folder.rglob("*")), folder / MANIFEST
     listed = {
         path.relative_to(folder).as_posix(): {"bytes": path.stat().st_size, "sha256": digest(path)}
-        for path in files
+        for path in below
+        if path.is_file()
     }
-    manifest = folder / MANIFEST
     manifest.write_text(json.dumps({"files": listed}, indent=1) + "\n", encoding="ascii")
-    below = [path for path in folder.rglob("*") if path.is_dir()]
-    for path in [*files, manifest, *below, folder]:
+    for path in [*below, manifest, folder]:
         sync(path)
 
 

@@ -106,18 +106,16 @@ class Shelf:
                 metrics_bytes=size,
             )
             ends = [end for s, end in record.ends.items() if share.start <= s < share.stop]
-            own = state
+            own = state if self.replay else state.replace(memory=None)
             if len(self.folders) > 1:  # of which the configuration has the numbers
-                own = jax.tree.map(lambda leaf, at=share: leaf[at], state.replace(numbers={}))
-            leaves = {each.name: getattr(own, each.name) for each in fields(own)}
-            leaves |= {} if self.replay else {"memory": None}
+                own = jax.tree.map(lambda leaf, at=share: leaf[at], own.replace(numbers={}))
             meta = {
                 "seeds": list(self.loop.seeds[share]),
                 "capacity": self.loop.agent.replay.capacity,
                 "settings": dict(settings),
                 "record": asdict(mine) | {"ends": ends},
             }
-            checkpoint.save(folder, record.step, leaves, meta)
+            checkpoint.save(folder, record.step, own, meta)
         self.newest = record.step
 
     def restore(self) -> tuple[Any, Record, list[str]]:

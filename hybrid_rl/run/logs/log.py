@@ -14,8 +14,7 @@ import numpy as np
 
 from hybrid_rl.errors import CheckpointError
 from hybrid_rl.files.atomic import open_own, write_text
-from hybrid_rl.files.reading import open_file
-from hybrid_rl.run.logs.records import Begun, Row, json_value
+from hybrid_rl.run.logs.records import Row, json_value
 
 
 class RunLog:
@@ -32,7 +31,8 @@ class RunLog:
         on_row: Callable[[Row], Any] = lambda row: None,
     ) -> None:
         self.run_dir, self.path = run_dir, run_dir / "metrics.jsonl"
-        self._begun, self._on_row = Begun(run_dir, seeds, config or {}), on_row
+        self._seeds, self._config, self._on_row = seeds, config or {}, on_row
+        self._resumed: int | None = None  # the step from which it is
         self._file: Any = None
         self._loggers: list[Any] = []
 
@@ -62,8 +62,9 @@ class RunLog:
             from hybrid_rl.run.logs import loggers  # TensorBoard takes 0.2 s
 
             self._check()
-            more = [loggers.WandB] if self._begun.config.get("logger") == "wandb" else []
-            self._loggers = [kind(self._begun) for kind in (loggers.TensorBoard, *more)]
+            self._loggers.append(loggers.TensorBoard(self.run_dir, self._seeds, self._resumed))
+            if self._config.get("logger") == "wandb":
+                self._loggers.append(loggers.WandB(self.run_dir, self._seeds, self._config))
 
     def _check(self) -> None:
         """Raise CheckpointError if metrics.jsonl is no longer the file that is open here."""
@@ -89,12 +90,12 @@ class RunLog:
         offset: [bytes] that `flush` returned then. Returns one line for each difference from the
         state at the checkpoint.
         """
-        self._file = open_own(self.path)
-        with open_file(self.path) as file:
-            whole = file.read(offset).rpartition(b"\n")
+        self._file = open_own(self.path, "a+b")
+        self._file.seek(0)
+        whole = self._file.read(offset).rpartition(b"\n")
         self._file.truncate(len(whole[0] + whole[1]))
         self._file.seek(0, os.SEEK_END)
-        self._begun = self._begun._replace(step=step)
+        self._resumed = step
         if self._file.tell() == offset:
             return []
         return [f"{self.path} has changed: rows before step {step} are missing"]

@@ -8,7 +8,9 @@ A resumed run continues the runs of W&B, which drop steps that they have already
 
 import time
 import uuid
+from collections.abc import Sequence
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 from tensorboardX.event_file_writer import EventsWriter
@@ -19,7 +21,7 @@ from tensorboardX.proto.event_pb2 import (  # made at import, so pyright cannot 
 from tensorboardX.proto.summary_pb2 import Summary  # pyright: ignore[reportAttributeAccessIssue]
 
 from hybrid_rl.files.atomic import open_own, own_folder
-from hybrid_rl.run.logs.records import COORDINATES, Begun, Row
+from hybrid_rl.run.logs.records import COORDINATES, Row
 
 
 def scalars(row: Row) -> dict[str, float]:
@@ -36,16 +38,17 @@ class TensorBoard:
     here what is flushed survives a kill.
     """
 
-    def __init__(self, run: Begun) -> None:
-        folder = own_folder(run.folder / "tensorboard")
+    def __init__(self, run_dir: Path, seeds: Sequence[int], resumed: int | None = None) -> None:
+        """resumed: the step from which the run is."""
+        folder = own_folder(run_dir / "tensorboard")
         self._files: dict[int, EventsWriter] = {}
-        for seed in run.seeds:
-            home = own_folder(folder / f"seed_{seed}") if len(run.seeds) > 1 else folder
+        for seed in seeds:
+            home = own_folder(folder / f"seed_{seed}") if len(seeds) > 1 else folder
             unique = f".{time.time_ns()}"  # files of the same second stay apart, in order
             self._files[seed] = EventsWriter(str(home / "events"), unique)
-            if run.step is not None:
+            if resumed is not None:
                 start = SessionLog(status=SessionLog.START)
-                event = Event(step=run.step + 1, session_log=start, wall_time=time.time())
+                event = Event(step=resumed + 1, session_log=start, wall_time=time.time())
                 self._files[seed].write_event(event)
 
     def __call__(self, row: Row) -> None:
@@ -71,8 +74,8 @@ class WandB:
     The run folder holds what they write, and an id for each of them.
     """
 
-    def __init__(self, run: Begun) -> None:
-        self._run = run
+    def __init__(self, run_dir: Path, seeds: Sequence[int], config: dict[str, Any]) -> None:
+        self._folder, self._seeds, self._config = run_dir, seeds, config
         self._runs: dict[int, Any] = {}  # by seed
 
     def __call__(self, row: Row) -> None:
@@ -85,11 +88,11 @@ class WandB:
 
     def _started(self, seed: int) -> Any:
         wandb: Any = import_module("wandb")
-        folder, config = self._run.folder, self._run.config
+        folder, config = self._folder, self._config
         return wandb.init(
             id=self.id_of(seed),
             resume="allow",
-            name=folder.name + (f" seed {seed}" if len(self._run.seeds) > 1 else ""),
+            name=folder.name + (f" seed {seed}" if len(self._seeds) > 1 else ""),
             group=str(folder),
             job_type=f"{config['task']} {config['algo']}",
             dir=str(folder),
@@ -100,7 +103,7 @@ class WandB:
 
     def id_of(self, seed: int) -> str:
         """The id of the run of a seed, the same when it is resumed."""
-        file = self._run.folder / "wandb" / f"seed_{seed}.id"
+        file = self._folder / "wandb" / f"seed_{seed}.id"
         if not file.exists():
             own_folder(file.parent)
             with open_own(file, "w", encoding="ascii") as out:

@@ -7,10 +7,9 @@ seed in a file.
 
 import json
 import math
-from collections.abc import Container, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Container, Mapping
 from types import NoneType
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -21,15 +20,6 @@ Row = dict[str, Any]
 COORDINATES = ("step", "seed", "wall_s")  # of a row; every other name but WORD is a metric
 WORD = "diverged"  # of a row: the only value that is no number
 Number = int | float | NoneType
-
-
-class Begun(NamedTuple):
-    """A run whose rows are to come."""
-
-    folder: Path
-    seeds: Sequence[int]
-    config: dict[str, Any]
-    step: int | None = None  # from which it is resumed
 
 
 def row_of(line: bytes) -> Row | None:
@@ -56,20 +46,6 @@ def result_line(summary: Mapping[str, Any]) -> str:
             text += f" (mean of {len(known)} seeds)"
         parts.append(f"{name} {text}")
     return "; ".join(parts)
-
-
-def changes(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
-    """Lines "KEY was A and is B", by full keys.
-
-    A part occurs several times in a configuration: its shortest key names a change.
-    """
-    changed: dict[str, str] = {}
-    for key in sorted({*now, *then}, key=lambda key: (key.count("."), key)):
-        before, after = then.get(key, "absent"), now.get(key, "absent")
-        if before != after:
-            line = f"was {before} and is {after}"
-            changed.setdefault(f"{key.rpartition('.')[2]} {line}", f"{key} {line}")
-    return list(changed.values())
 
 
 def flatten_keys(node: Mapping[str, Any], where: str = "") -> dict[str, Any]:
@@ -171,12 +147,9 @@ def means(sums: Sums, learners: int, end: int, ended: Container[int] = ()) -> li
 
     ended: learners that diverged, which have no row.
     """
-    averages = []
-    for s in range(learners):
-        if s in ended:
-            continue
-        row: Row = {"step": end, "learner": s}
-        own = {name: values[:, s] for name, values in sums.items()}
-        row |= {name: total / count for name, (total, count) in own.items() if count}
-        averages.append(row)
-    return averages
+    return [
+        {"step": end, "learner": s}
+        | {name: total[s] / count[s] for name, (total, count) in sums.items() if count[s]}
+        for s in range(learners)
+        if s not in ended
+    ]
