@@ -38,12 +38,12 @@ class Recurrent:
 
     model: Trainable
     history: Count  # observations from which the memory is read
-    memory: Count = 64
-    hidden: Widths = (128,)  # of the network of K and y
+    memory: Count = 32
+    hidden: Widths = (64,)  # of the network of K and y
 
     def __post_init__(self) -> None:
         if self.history < 2:
-            raise FieldError(self, "history", "must be 2 or more; give episode.history=16")
+            raise FieldError(self, "history", "must be 2 or more; give episode.history=32")
 
     @property
     def members(self) -> int:

@@ -115,5 +115,5 @@ def test_model_and_reward_teach_the_memory(lived):
 
 
 def test_it_needs_a_history():
-    with pytest.raises(ValueError, match=r"history.*2 or more; give episode.history=16"):
+    with pytest.raises(ValueError, match=r"history.*2 or more; give episode.history=32"):
         Recurrent(Gaussian(), history=1)
