@@ -11,12 +11,12 @@ from scripts.hidden_velocities import Lived
 
 
 def test_a_true_model_is_right_and_a_wrong_one_less_so():
-    """o' = o + u, paid 2 o' of one number; a bias of 0.1 a decision grows."""
+    """o' = o + u, paid 2 o' of one number; a bias of 1 a decision grows."""
     u = jax.random.normal(jax.random.key(0), (3, 250, 1))
     obs = jnp.cumsum(u, 1) - u
     data = Lived(obs, u, obs[..., 0], 2 * (obs + u)[..., 0])
     found = []
-    for bias in (0.0, 0.1):
+    for bias in (0.0, 1.0):
         own: Any = SimpleNamespace(
             params=lambda state: {},
             model=SimpleNamespace(
