@@ -28,4 +28,5 @@ def test_a_true_model_is_right_and_a_wrong_one_less_so():
     right, biased = found
     assert right == [1.0] * len(study.AFTER)
     wrong = [1 - r2 for r2 in biased]
-    assert 0 < wrong[0] < 0.05 and wrong[-1] > 20 * wrong[0]
+    assert 0 < wrong[0] < 0.05
+    assert wrong[-1] > 20 * wrong[0]

@@ -17,6 +17,7 @@ needed?"), without its bias towards 0 at first (as Adam's means, Kingma and Ba 2
 deterministic memory in which policies and planners act: Hafner et al. 2019 (PlaNet).
 """
 
+from functools import partial
 from typing import Any, cast
 
 import jax
@@ -28,8 +29,6 @@ from hybrid_rl.fields import Count, FieldError, part
 from hybrid_rl.networks import MLP, Widths, apply
 from hybrid_rl.protocols import Trainable
 from hybrid_rl.types import Spec
-
-TINY = 1e-12  # weight of a history that tells nothing
 
 
 @part
@@ -81,12 +80,11 @@ class Recurrent:
         """x [n] after a history [s]."""
         o, dt = params["change"].mean.size, params["dt"]
         rows = obs[o:].reshape(self.history - 1, -1)  # v and u before it, newest first
-        seen = obs[None, :o] - dt * (jnp.cumsum(rows[:, :o], 0) - rows[:, :o])
-        rows = jnp.concatenate((seen, rows), 1)
+        newer = partial(jnp.matmul, jnp.tri(len(rows), k=-1), precision="highest")  # their sums
+        rows = jnp.concatenate((obs[None, :o] - dt * newer(rows[:, :o]), rows), 1)
         gain, y = self._told(params, rows)
-        left = jnp.cumprod(jnp.concatenate((jnp.ones((1, self.memory)), 1 - gain[:-1])), 0)
-        weight = gain * left
-        h = (weight * y).sum(0) / jnp.maximum(weight.sum(0), TINY)
+        weight = jax.nn.log_sigmoid(gain) + newer(jax.nn.log_sigmoid(-gain))
+        h = (jax.nn.softmax(weight, 0) * y).sum(0)
         return jnp.concatenate((obs[: 2 * o], h))
 
     def step(self, params: dict[str, Any], x: Array, u: Array) -> Array:
@@ -124,13 +122,15 @@ class Recurrent:
         moving = x.size - self.memory
         row = jnp.concatenate((after[:moving], u))
         gain, y = self._told(params, row)
-        return jnp.concatenate((after[:moving], x[moving:] + gain * (y - x[moving:])))
+        return jnp.concatenate(
+            (after[:moving], x[moving:] + jax.nn.sigmoid(gain) * (y - x[moving:]))
+        )
 
     def _told(self, params: dict[str, Any], rows: Array) -> tuple[Array, Array]:
-        """K and y [..., memory] of rows (o, v, u) [..., d] of decisions."""
+        """The logits of K, and y [..., memory], of rows (o, v, u) [..., d] of decisions."""
         moving = params["state"].mean.size - self.memory
         state = jax.tree.map(lambda leaf: leaf[:moving] if leaf.ndim else leaf, params["state"])
         x = statistics.normalise(state, rows[..., :moving])
         x = jnp.concatenate((x, rows[..., moving:]), -1)
         gain, y = jnp.split(apply(self._net, params["weights"]["filter"], x), 2, -1)
-        return jax.nn.sigmoid(gain), jnp.tanh(y)
+        return gain, jnp.tanh(y)
