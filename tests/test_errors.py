@@ -8,10 +8,9 @@ from importlib import import_module
 
 import pytest
 from omegaconf import OmegaConf
-from tiny import call, call_train, contents, only_line, refusal, run
+from tiny import call_command, call_train, contents, only_line, refusal, run
 
 from hybrid_rl import render
-from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.errors import UsageError
 from hybrid_rl.settings import build as config
@@ -110,7 +109,7 @@ def test_runs_and_other_commands_refuse(nothing_lost, folders, monkeypatch, capf
     name, *arguments = given.format(**folders).split()
     ended = call_train
     if name != "train":
-        ended = partial(call, lambda: command.run(import_module(f"hybrid_rl.{name}").main))
+        ended = partial(call_command, import_module(f"hybrid_rl.{name}").main)
     assert ended(*arguments) == 2
     out, err = capfd.readouterr()
     assert (out, err.count("\n")) == ("", 1)
@@ -129,7 +128,7 @@ def test_render_says_what_to_install(nothing_lost, folders, monkeypatch, capfd):
     monkeypatch.setattr(offscreen, "TRIAL", "raise SystemExit(1)")
     monkeypatch.setattr(sys, "platform", "linux")
     offscreen.chosen.cache_clear()
-    assert call(lambda: command.run(render.main), f"run={folders['trained']}") == 1
+    assert call_command(render.main, f"run={folders['trained']}") == 1
     assert "install libegl1 or libosmesa6" in only_line(capfd)
 
 
@@ -150,7 +149,7 @@ def test_memory_that_runs_out_is_one_line(capfd):
     def fail():
         raise RuntimeError("RESOURCE_EXHAUSTED: Out of memory allocating 12 bytes.\nand more")
 
-    assert call(lambda: command.run(fail)) == 1
+    assert call_command(fail) == 1
     assert "allocating 12 bytes.; fewer num_seeds or num_envs" in only_line(capfd)
 
 
@@ -158,7 +157,7 @@ def test_an_error_in_the_code_of_a_user_is_one_line_that_names_it(tmp_path, monk
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine.py").write_text("def broken():\n    return {}['goal']\n")
     monkeypatch.syspath_prepend(tmp_path)
-    assert call(lambda: command.run(import_module("mine").broken)) == 1
+    assert call_command(import_module("mine").broken) == 1
     assert only_line(capfd) == "hybrid_rl: mine.py:2: KeyError: 'goal'\n"
 
 

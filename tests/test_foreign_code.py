@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from foreign import METRIC, changed, made, refused
-from tiny import call, contents, refusal
+from tiny import call_command, contents, refusal
 
 from hybrid_rl import (
     OnlineLearner,
@@ -19,7 +19,6 @@ from hybrid_rl import (
     render,
     robot,
 )
-from hybrid_rl.cli import command
 from hybrid_rl.data import archive
 from hybrid_rl.data import trained as saved
 from hybrid_rl.envs.adapters.external import External
@@ -279,7 +278,7 @@ def test_words_that_a_terminal_or_matplotlib_obeys_are_shown_as_they_are(folder,
     for main, out in ((report.main, "a.html"), (figures.main, "a.svg")):
         line = [f"run={folder}"] if main is report.main else [f"runs={folder}", METRIC]
         line.append(f"out={out}")
-        assert call(lambda main=main: command.run(main), *line) == 0
+        assert call_command(main, *line) == 0
     assert "$\\undefined{x}$" in Path("a.svg").read_text()
     capfd.readouterr()
     changed(folder, env={"_target_": "a\x1b]0;title\x07\nhybrid_rl: done"})

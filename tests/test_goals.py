@@ -8,10 +8,9 @@ from pathlib import Path
 import jax
 import numpy as np
 import pytest
-from tiny import call, finished, only_line, refusal, run
+from tiny import call_command, finished, only_line, refusal, run
 
 from hybrid_rl import demonstrate, evaluate
-from hybrid_rl.cli import command
 from hybrid_rl.controllers.gradient import GradientController
 from hybrid_rl.controllers.sampling import SamplingController
 from hybrid_rl.errors import UsageError
@@ -27,7 +26,7 @@ pytestmark = pytest.mark.turns(3)
 METHOD = ["algo=hybrid_stochastic", "learning=replay"]
 AT = ["reward=aim", "reward.quantity=position", "reward.target=0.5"]
 SMALL = ["planner.horizon=3", "planner.tail=2", "planner.samples=6", "planner.refined=2"]
-main = partial(call, lambda: command.run(demonstrate.main))
+main = partial(call_command, demonstrate.main)
 
 
 # A run of a few decisions with models, policy and critic.
@@ -202,7 +201,7 @@ def test_a_file_holds_the_reward_and_the_constraint_of_its_run(tmp_path) -> None
 def test_evaluate_names_the_goal(trained: Path, capsys) -> None:
     """In its output and in the file's name."""
     given = [f"run={trained}", "episodes=2", "mode=policy", *AT, "env.reward=cos"]
-    assert call(lambda: command.run(evaluate.main), *given) == 0
+    assert call_command(evaluate.main, *given) == 0
     assert "reward=aim, reward.quantity=position" in capsys.readouterr().out
     (file,) = trained.glob("evaluation_policy_reward=aim*.json")
     assert json.loads(file.read_text())["changes"]["reward.target"] == "0.5"

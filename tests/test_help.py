@@ -7,10 +7,10 @@ from importlib import import_module
 from importlib.util import find_spec
 
 import pytest
-from tiny import call, call_train
+from tiny import call_command, call_train
 
 from hybrid_rl import __main__ as commands
-from hybrid_rl.cli import arguments, command
+from hybrid_rl.cli import arguments
 from hybrid_rl.cli.arguments import Argument, number, one_of, several, whole
 from hybrid_rl.errors import UsageError
 from hybrid_rl.settings.build import CONF
@@ -24,7 +24,7 @@ def test_every_command_explains_itself(name, flag, capsys):
     """Purpose, an example, every argument with its default."""
     package = find_spec(f"hybrid_rl.{name}").submodule_search_locations
     module = import_module(f"hybrid_rl.{name}{'.__main__' if package else ''}")
-    assert call(lambda: command.run(module.main), flag) == 0
+    assert call_command(module.main, flag) == 0
     printed, err = capsys.readouterr()
     assert err == ""
     assert printed.startswith(module.__doc__.splitlines()[0])

@@ -9,11 +9,10 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from scenes import FIXED
-from tiny import call, refusal
+from tiny import call_command, refusal
 
 from hybrid_rl import render
 from hybrid_rl.analysis import drawing
-from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.run.saved import Trained
 from hybrid_rl.training.episode import Episode
@@ -73,7 +72,7 @@ def trained(monkeypatch):
     return run
 
 
-draw = partial(call, lambda: command.run(render.main))
+draw = partial(call_command, render.main)
 
 
 def test_an_episode_ends_where_the_world_ends(trained):

@@ -7,10 +7,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from tiny import call, run
+from tiny import call_command, run
 
 from hybrid_rl import demonstrate
-from hybrid_rl.cli import command
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.data.trained import SavedPolicy, save
 from hybrid_rl.envs.analytic.pendulum import Pendulum
@@ -111,7 +110,7 @@ def test_the_policy_of_a_run_becomes_the_expert_of_its_task(
     monkeypatch.chdir(tmp_path)
     run(tmp_path / "run", "algo=sac", "num_seeds=2")
     write = [f"run={tmp_path / 'run'}", "policy=policy.npz", "command=as above"]
-    assert call(lambda: command.run(demonstrate.main), *write) == 0
+    assert call_command(demonstrate.main, *write) == 0
     given = load(tmp_path / "run")
     line = ["task=pendulum", "algo=sac", "expert=trained"]
     expert = config.expert(config.load([*line, "expert.policy.file=policy.npz"]))

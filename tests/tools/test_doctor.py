@@ -6,10 +6,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from tiny import call, finished, summary_of
+from tiny import call_command, finished, summary_of
 
 from hybrid_rl.analysis.results import RunFolder
-from hybrid_rl.cli import command
 from hybrid_rl.tools.doctor import __main__ as doctor
 from hybrid_rl.tools.doctor import evidence as evidence_of
 from hybrid_rl.tools.doctor import learned, linear, observed, regular, task
@@ -258,7 +257,7 @@ def test_a_model_is_judged_beside_no_change_and_collisions_count_once():
 folder = finished("task=pendulum", "algo=nn_mppi", "total_steps=120", "random_steps=3")
 
 
-main = partial(call, partial(command.run, doctor.main))
+main = partial(call_command, doctor.main)
 
 
 def test_the_command_reads_a_run(folder, capsys):
