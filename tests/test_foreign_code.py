@@ -2,9 +2,7 @@
 
 import json
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 import pytest
 from foreign import METRIC, changed, made, refused
 from tiny import call_command, contents, refusal
@@ -19,14 +17,11 @@ from hybrid_rl import (
     render,
     robot,
 )
-from hybrid_rl.data import archive
-from hybrid_rl.data import trained as saved
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import UsageError
 from hybrid_rl.files import targets as parts
 from hybrid_rl.run import folder as run_folder
-from hybrid_rl.run.saved import read
 from hybrid_rl.settings import build as config
 from hybrid_rl.tools.doctor import __main__ as doctor
 from hybrid_rl.tools.report import __main__ as report
@@ -149,35 +144,6 @@ def test_a_name_that_is_no_part_is_refused(folder, env, begins):
 @pytest.mark.parametrize(("keys", "at"), EVERYWHERE, ids=[at for _, at in EVERYWHERE])
 def test_it_is_refused_wherever_it_stands(folder, keys, at):
     assert judged(folder, **keys).startswith(f"{at}: is no part of hybrid_rl")
-
-
-def policy(**keys: Any) -> None:
-    """Write theirs.npz, a policy of the package whose description has these keys, too."""
-    arrays: Any = dict(np.load(archive.find("policies/lander.npz")))
-    about = json.loads(str(arrays["about"]))
-    about |= {key: about.get(key, {}) | more for key, more in keys.items()}
-    np.savez("theirs.npz", **arrays | {"about": np.array(json.dumps(about))})
-
-
-@pytest.mark.parametrize("key", ["make", "id", "kwargs"])
-@pytest.mark.parametrize("name", ["subprocess:getoutput", "antigravity:A-v0"])
-def test_a_policy_names_no_code_of_others(tmp_path, monkeypatch, key, name):
-    """Whether it acts, or teaches in the configuration of another run."""
-    monkeypatch.chdir(tmp_path)
-    given = {"id": "", "make": "", key: {"cmd": name} if key == "kwargs" else name}
-    policy(env=EXTERNAL | {"kwargs": WANTED} | given, policy={"activation": name})
-    for open_file in (read, saved.described):
-        with pytest.raises(ValueError, match=f"={name}: is no part of hybrid_rl"):
-            open_file("theirs.npz")
-    assert [*Path().iterdir()] == [Path("theirs.npz")]
-
-
-@pytest.mark.parametrize("key", ["env", "objective", "new"])
-def test_a_policy_has_no_interpolations(tmp_path, monkeypatch, key):
-    monkeypatch.chdir(tmp_path)
-    policy(**{key: {"task": "${oc.env:HOME}"}})
-    with pytest.raises(UsageError, match="is an interpolation; it must be a plain value"):
-        read("theirs.npz")
 
 
 @pytest.mark.parametrize("line", COMMANDS)
