@@ -217,9 +217,8 @@ def test_a_gymnasium_environment_trains_as_it_is(conf, tmp_path, monkeypatch):
     (tmp_path / "reach.py").write_text(code)
     check_env(import_module("reach").Reach(), skip_render_check=True)
     run = tmp_path / "run"
-    composed = train(
-        conf, run, "task=gymnasium", "env.make=reach:Reach", "algo=sac", "episode.steps=4"
-    )
+    words = "task=gymnasium", "env.make=reach:Reach", "algo=sac", "episode.steps=4"
+    composed = train(conf, run, *words)
     assert (composed.task, composed.env.id, composed.episode.steps) == ("reach_Reach", "", 4)
     assert evaluate.evaluate(load(run), episodes=2)["return"].shape == (1, 2)
 

@@ -66,13 +66,10 @@ def test_labels_carry_units_and_thousands():
 @pytest.mark.parametrize(("tasks", "labels"), [(1, 1), (1, 9), (3, 4)])
 def test_legends_and_notes_cover_no_axes(tasks, labels):
     """By their boxes in the rendered picture; and all are inside the picture."""
-    names = itertools.product([f"task{i}" for i in range(tasks)], range(labels))
-    drawn = [
-        replace(
-            curve(task, f"a_method_with_a_long_name_{i}"), notes=(f"{task}, {i}: " + 30 * "word ",)
-        )
-        for task, i in names
-    ]
+    drawn = []
+    for task, i in itertools.product([f"task{i}" for i in range(tasks)], range(labels)):
+        one = curve(task, f"a_method_with_a_long_name_{i}")
+        drawn.append(replace(one, notes=(f"{task}, {i}: " + 30 * "word ",)))
     figure = plot(drawn)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()

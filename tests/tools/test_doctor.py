@@ -107,9 +107,8 @@ def test_commands_that_are_lost_and_signs_that_an_episode_draws_differ():
 def test_entries_that_are_swapped_every_other_decision_are_noticed():
     x, action = oscillator()
     x[:, 1::2] = x[:, 1::2, ::-1].copy()
-    assert "if every other decision has a rule of its own" in regular.alternates(
-        evidence(x, action)
-    )
+    line = regular.alternates(evidence(x, action))
+    assert "if every other decision has a rule of its own" in line
 
 
 def test_a_velocity_that_is_one_decision_old_is_a_late_sensor_and_no_delay():

@@ -19,9 +19,8 @@ def test_it_begins_continues_and_leaves_out_and_writes_what_there_is(tmp_path, m
     file, out, peers = tmp_path / "my.yaml", tmp_path / "out", tmp_path / "peers.json"
     file.write_text(yaml.safe_dump({"at": [10, 20], "each": "num_envs=2", "tasks": TASKS}))
     theirs = {"one": {"20": [90, 80, 3]}, "two": {"20": [50, None, 5]}}
-    peers.write_text(
-        json.dumps({"A": {"tasks": theirs}, "B": {"tasks": {"one": {"20": [40, 1, 2]}}}})
-    )
+    of_both = {"A": {"tasks": theirs}, "B": {"tasks": {"one": {"20": [40, 1, 2]}}}}
+    peers.write_text(json.dumps(of_both))
     lines = []
     done = SimpleNamespace(returncode=0)
     monkeypatch.setattr(subprocess, "run", lambda line, **_: lines.append(line[3:]) or done)
