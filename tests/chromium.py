@@ -79,9 +79,8 @@ class Chromium:
         """The result of a command; events that come before it are kept."""
         self.count += 1
         message = {"id": self.count, "method": method, "params": params}
-        self.socket.send(
-            json.dumps(message | ({"sessionId": self.session} if self.session else {}))
-        )
+        message |= {"sessionId": self.session} if self.session else {}
+        self.socket.send(json.dumps(message))
         while True:
             answer = json.loads(self.socket.recv(timeout=60))
             if answer.get("id") == self.count:
@@ -123,9 +122,8 @@ class Chromium:
 
     def mouse(self, kind: str, x: float, y: float) -> None:
         """mousePressed, mouseMoved or mouseReleased at a point, with the left button."""
-        self(
-            "Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=1, clickCount=1
-        )
+        left = {"button": "left", "buttons": 1, "clickCount": 1}
+        self("Input.dispatchMouseEvent", type=kind, x=x, y=y, **left)
 
     def click(self, text: str) -> None:
         """Click on the innermost visible element with exactly this text, once it stands still."""

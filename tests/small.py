@@ -30,9 +30,8 @@ def put(node: Any, **values: Any) -> None:
 def with_demonstrations(composed: DictConfig, folder: Path) -> DictConfig:
     """The configuration with a file of random decisions, if its method learns from one."""
     learners = composed.learners.values()
-    if composed.replay.demonstrations or any(
-        each and each.get("demonstrations") for each in learners
-    ):
+    shown = any(each and each.get("demonstrations") for each in learners)
+    if shown or composed.replay.demonstrations:
         put(composed, file=demonstrate(folder, composed).partition("=")[2])
     return composed
 
@@ -57,9 +56,7 @@ def trace(agent: Any) -> None:
     """Fail unless a decision has the shapes of the state before it."""
     state = jax.eval_shape(agent.init, jax.random.key(0))
     after, metrics = jax.eval_shape(agent.step, state, jnp.int32(0))
-    sizes = [
-        jax.tree.map(lambda leaf: (leaf.shape, leaf.dtype.name), each) for each in (state, after)
-    ]
+    sizes = [jax.tree.map(lambda x: (x.shape, x.dtype.name), each) for each in (state, after)]
     assert jax.tree.structure(state) == jax.tree.structure(after)
     assert jax.tree.leaves(sizes[0]) == jax.tree.leaves(sizes[1])
     assert metrics

@@ -58,9 +58,10 @@ def write(file, error):
         raise error
 
 
-@pytest.mark.parametrize(
-    "error", [OSError(errno.ENOSPC, "No space left on device"), KeyboardInterrupt()]
-)
+FULL = OSError(errno.ENOSPC, "No space left on device")
+
+
+@pytest.mark.parametrize("error", [FULL, KeyboardInterrupt()])
 def test_an_error_leaves_the_older_file(tmp_path, error):
     file = tmp_path / "figure.png"
     file.write_text("older")

@@ -13,10 +13,9 @@ import jax
 import numpy as np
 import pytest
 from omegaconf import OmegaConf
-from tiny import TINY, call, call_train, contents, rows_of, summary_of
+from tiny import TINY, call_command, call_train, contents, rows_of, summary_of
 
 from hybrid_rl import evaluate
-from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco.native import cores
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.checkpoints import checkpoint
@@ -81,7 +80,7 @@ def test_the_summary_describes_the_run(trained):
 
 @pytest.mark.parametrize("mode", MODES)
 def test_evaluate_repeats_what_training_measured_last(trained, capsys, mode):
-    code = call(lambda: command.run(evaluate.main), f"run={trained}", "episodes=1", f"mode={mode}")
+    code = call_command(evaluate.main, f"run={trained}", "episodes=1", f"mode={mode}")
     assert code == 0
     values = json.loads((trained / f"evaluation_{mode}.json").read_text())
     named = [values[key] for key in ("mode", "step", "seeds", "episodes")]
@@ -97,7 +96,7 @@ def test_evaluate_repeats_what_training_measured_last(trained, capsys, mode):
 def test_evaluate_in_another_world(trained, capsys):
     """A pole of which the policy sees little, and actions that arrive late."""
     changes = ("episode.sensor_noise=3.0", "episode.delay=1")
-    main = partial(call, lambda: command.run(evaluate.main))
+    main = partial(call_command, evaluate.main)
     assert main(f"run={trained}", "episodes=3", "mode=policy", *changes) == 0
     assert f"step 600, {', '.join(changes)}" in capsys.readouterr().out
     name = "evaluation_policy_episode.sensor_noise=3.0_episode.delay=1.json"

@@ -5,14 +5,13 @@ import re
 from functools import partial
 
 import pytest
-from tiny import call, refusal, write_run
+from tiny import call_command, refusal, write_run
 
-from hybrid_rl.cli import command
 from hybrid_rl.tools.report import __main__ as report
 from scripts.pages import __main__ as pages
 from scripts.pages import community
 
-main = partial(call, lambda: command.run(report.main))
+main = partial(call_command, report.main)
 PAGE = community.RESULTS / "community.md"
 ROW = {"task": "hop", "steps": 9, "seeds": [0, 1], "returns": [2, 4.0], "decisions_per_s": None}
 ENTRY = {"name": "a", "link": "https://a.org/b", "machine": "m", "rows": [ROW]}

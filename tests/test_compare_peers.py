@@ -9,13 +9,12 @@ from types import SimpleNamespace
 import gymnasium
 import numpy as np
 import pytest
-from tiny import call, only_line
+from tiny import call_command, only_line
 
-from hybrid_rl.cli import command
 from scripts import compare_peers, peers_picture
 from scripts.pages import values
 
-main = partial(call, lambda: command.run(compare_peers.main))
+main = partial(call_command, compare_peers.main)
 GIVEN = ["method=Rest", "env=Pendulum-v1"]
 PEER = """
 class Rest:

@@ -5,11 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tiny import TINY, call, call_train, finished, refusal, run
+from tiny import TINY, call_command, call_train, finished, refusal, run
 from tiny import demonstrate as recorded
 
 from hybrid_rl import demonstrate, evaluate, train
-from hybrid_rl.cli import command
 from hybrid_rl.constraints.effort import Effort
 from hybrid_rl.data.demonstrations import load
 from hybrid_rl.envs.experts.push import PushController
@@ -46,7 +45,7 @@ def test_a_run_is_recorded_the_same_twice_and_learned_from(trained, tmp_path, mo
     monkeypatch.chdir(tmp_path)
     for out in ("", "out=again.npz"):
         line = [f"run={trained}", "mode=policy", "episodes=3", "seed=7", *([out] if out else [])]
-        assert call(lambda: command.run(demonstrate.main), *line) == 0
+        assert call_command(demonstrate.main, *line) == 0
     assert "pendulum.npz: 3 episodes, 120 decisions, seed 7, return -" in capsys.readouterr().out
     one, two = load("demonstrations/pendulum.npz"), load("again.npz")
     assert all(np.array_equal(one[name], two[name]) for name in one)
@@ -62,13 +61,13 @@ def test_a_run_is_recorded_the_same_twice_and_learned_from(trained, tmp_path, mo
 def test_the_task_is_changed_as_in_training(tmp_path, capsys):
     out = tmp_path / "short.npz"
     line = ["task=sawyer_push", "episodes=1", "episode.steps=3", "env.speed=0.05", f"out={out}"]
-    assert call(lambda: command.run(demonstrate.main), *line) == 0
+    assert call_command(demonstrate.main, *line) == 0
     result = load(out)
     assert len(result["reward"]) == 3
     moved = np.linalg.norm(np.diff(result["obs"][:, :2] / 10, axis=0), axis=1)
     assert (moved < 0.05 * np.sqrt(2) * 0.1).all()  # [m] in a decision
     for wrong in ("env.sped=1", "planner.samples=3"):
-        assert call(lambda: command.run(demonstrate.main), *line, wrong) == 2
+        assert call_command(demonstrate.main, *line, wrong) == 2
     printed = capsys.readouterr().err
     assert "env.sped: sac has no such key" in printed
     assert "planner.samples=3: unknown argument; give KEY=VALUE with task" in printed
@@ -80,7 +79,7 @@ def test_a_task_of_ones_own_has_an_expert_too(tmp_path):
         "# @package _global_\ndefaults: [/task@_global_: pendulum, _self_]\ntask: mine\n"
     )
     line = [f"config_dir={tmp_path}", "task=mine", "expert=babble", f"out={tmp_path / 'x.npz'}"]
-    assert call(lambda: command.run(demonstrate.main), *line, "episode.steps=3", "episodes=1") == 0
+    assert call_command(demonstrate.main, *line, "episode.steps=3", "episodes=1") == 0
     assert load(tmp_path / "x.npz")["task"] == "mine"
 
 
@@ -101,7 +100,7 @@ def test_a_regulator_of_recordings_outlives_them(tmp_path):
     """The model that it learned from them is in the checkpoint, where studies find it, too."""
     task, file = "task=van_der_pol", tmp_path / "babble.npz"
     given = [task, "expert=babble", "episodes=2", "episode.steps=30", f"out={file}"]
-    assert call(lambda: command.run(demonstrate.main), *given) == 0
+    assert call_command(demonstrate.main, *given) == 0
     folder = tmp_path / "run"
     few = ["total_steps=4", "checkpoint_every=4", "episode.steps=2", "compile_cache=null"]
     given = [task, "algo=koopman_known", f"demonstrations={file}", f"run_dir={folder}", *few]

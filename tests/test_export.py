@@ -11,10 +11,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from tiny import call, refusal
+from tiny import call_command, refusal
 
 from hybrid_rl import export
-from hybrid_rl.cli import command
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.controllers.sampling import SamplingController
 from hybrid_rl.envs.analytic.pendulum import Pendulum
@@ -88,7 +87,7 @@ def first(leaf):
     return leaf[0]
 
 
-main = partial(call, lambda: command.run(export.main), "run=x")
+main = partial(call_command, export.main, "run=x")
 
 
 def test_files_act_as_the_run_does_without_hybrid_rl(trained, tmp_path, capsys):

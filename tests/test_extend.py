@@ -12,11 +12,10 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 from omegaconf import OmegaConf
-from tiny import TINY, call, call_train, refusal, summary_of
+from tiny import TINY, call_command, call_train, refusal, summary_of
 
 from hybrid_rl import evaluate, render
 from hybrid_rl.analysis import drawing
-from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.errors import SourceOf, UsageError
 from hybrid_rl.outside.actor import Actor
@@ -100,7 +99,7 @@ def test_a_part_is_one_file_and_one_yaml(ring, tmp_path, capfd):
     summary = summary_of(tmp_path / "run")
     assert (summary["algo"], summary["finished"]) == ("kle3", True)
     folder = f"run={tmp_path / 'run'}"  # of a method that learns nothing
-    assert call(lambda: command.run(evaluate.main), folder, "episodes=1") == 0
+    assert call_command(evaluate.main, folder, "episodes=1") == 0
 
 
 @pytest.mark.parametrize(
@@ -206,7 +205,7 @@ def test_a_reward_is_one_file_that_the_environment_pays(conf, tmp_path, capsys):
     assert (np.abs(got) <= 5 * 1.2).all()
     train(conf, tmp_path / "other", "task=pendulum", "algo=nn_mppi", "episode.steps=5")
     words = f"run={tmp_path / 'other'}", "reward=upright", f"config_dir={conf}", "episodes=2"
-    assert call(lambda: command.run(evaluate.main), *words) == 0
+    assert call_command(evaluate.main, *words) == 0
     assert "reward=upright" in capsys.readouterr().out
 
 
@@ -218,9 +217,8 @@ def test_a_gymnasium_environment_trains_as_it_is(conf, tmp_path, monkeypatch):
     (tmp_path / "reach.py").write_text(code)
     check_env(import_module("reach").Reach(), skip_render_check=True)
     run = tmp_path / "run"
-    composed = train(
-        conf, run, "task=gymnasium", "env.make=reach:Reach", "algo=sac", "episode.steps=4"
-    )
+    words = "task=gymnasium", "env.make=reach:Reach", "algo=sac", "episode.steps=4"
+    composed = train(conf, run, *words)
     assert (composed.task, composed.env.id, composed.episode.steps) == ("reach_Reach", "", 4)
     assert evaluate.evaluate(load(run), episodes=2)["return"].shape == (1, 2)
 

@@ -5,10 +5,9 @@ import sys
 
 import pytest
 from matplotlib.figure import Figure
-from tiny import call, contents, refusal, write_run
+from tiny import call_command, contents, refusal, write_run
 
 from hybrid_rl import figures
-from hybrid_rl.cli import command
 
 pytestmark = pytest.mark.turns(3)
 
@@ -55,7 +54,7 @@ def toy(tmp_path, monkeypatch):
 
 def draw(*arguments):
     """Exit code of the command."""
-    return call(lambda: command.run(figures.main), *arguments)
+    return call_command(figures.main, *arguments)
 
 
 def runs(folder):

@@ -7,10 +7,10 @@ from importlib import import_module
 from importlib.util import find_spec
 
 import pytest
-from tiny import call, call_train
+from tiny import call_command, call_train
 
 from hybrid_rl import __main__ as commands
-from hybrid_rl.cli import arguments, command
+from hybrid_rl.cli import arguments
 from hybrid_rl.cli.arguments import Argument, number, one_of, several, whole
 from hybrid_rl.errors import UsageError
 from hybrid_rl.settings.build import CONF
@@ -24,7 +24,7 @@ def test_every_command_explains_itself(name, flag, capsys):
     """Purpose, an example, every argument with its default."""
     package = find_spec(f"hybrid_rl.{name}").submodule_search_locations
     module = import_module(f"hybrid_rl.{name}{'.__main__' if package else ''}")
-    assert call(lambda: command.run(module.main), flag) == 0
+    assert call_command(module.main, flag) == 0
     printed, err = capsys.readouterr()
     assert err == ""
     assert printed.startswith(module.__doc__.splitlines()[0])
@@ -51,11 +51,9 @@ def test_the_package_lists_its_commands():
     whole = [sys.executable, "-m", "hybrid_rl"]
     done = subprocess.run(whole, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
-    files = [
-        p.stem for p in (CONF.parent / "hybrid_rl").glob("[a-z]*.py") if "__main__" in p.read_text()
-    ]
-    for name in files:
-        assert f"python -m hybrid_rl.{name} " in done.stdout
+    for file in (CONF.parent / "hybrid_rl").glob("[a-z]*.py"):
+        if "__main__" in file.read_text():
+            assert f"python -m hybrid_rl.{file.stem} " in done.stdout
     done = subprocess.run([*whole, "train", "task=ant"], capture_output=True, text=True)
     assert (done.returncode, done.stdout) == (2, "")
     assert "write python -m hybrid_rl.train" in done.stderr
@@ -81,22 +79,19 @@ def test_arguments_are_parsed_as_declared(monkeypatch):
     assert read(monkeypatch, "runs=r")[0] == {"sizes": 3, "parts": ["a"], "runs": "r", **rest}
 
 
-@pytest.mark.parametrize(
-    ("line", "words"),
-    [
-        ("", "runs: not given; give runs=GLOB"),
-        ("sizes=5", "sizes=5: must be an even number"),
-        ("parts=a,c", "parts=c: choose one of a, b"),
-        ("seconds=-1", "seconds=-1: must be a number, 0 or more"),
-        ("kind=c", "kind=c: choose one of a, b"),
-        ("sise=3", "sise=3: unknown argument; did you mean sizes=VALUE?"),
-        ("--runs r", "--runs: unknown argument; did you mean runs=VALUE?"),
-        (
-            "x",
-            "x: unknown argument; give KEY=VALUE with sizes, parts, seconds, kind, runs, env.KEY",
-        ),
-    ],
-)
+WRONG = [
+    ("", "runs: not given; give runs=GLOB"),
+    ("sizes=5", "sizes=5: must be an even number"),
+    ("parts=a,c", "parts=c: choose one of a, b"),
+    ("seconds=-1", "seconds=-1: must be a number, 0 or more"),
+    ("kind=c", "kind=c: choose one of a, b"),
+    ("sise=3", "sise=3: unknown argument; did you mean sizes=VALUE?"),
+    ("--runs r", "--runs: unknown argument; did you mean runs=VALUE?"),
+    ("x", "x: unknown argument; give KEY=VALUE with sizes, parts, seconds, kind, runs, env.KEY"),
+]
+
+
+@pytest.mark.parametrize(("line", "words"), WRONG)
 def test_what_is_no_argument_is_one_line(monkeypatch, line, words):
     with pytest.raises(UsageError) as raised:
         read(monkeypatch, *line.split())

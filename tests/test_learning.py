@@ -12,24 +12,15 @@ from tiny import rows_of, run
 from hybrid_rl.core import adjoint, rollout
 
 RANDOM = 400  # decisions: two episodes
-MODEL = [
-    "model=gaussian",
-    "model.hidden=[64]",
-    "reward_model.hidden=[64]",
-    "model_learner.batch_size=64",
-    "model_learner.updates=2",
-    "model_learner.learning_rate=3e-3",
-]
-SAC = [
-    "policy.hidden=[64,64]",
-    "critic.hidden=[64,64]",
-    "policy_learner.batch_size=64",
-    "policy_learner.policy_learning_rate=2e-3",
-    "policy_learner.critic_learning_rate=2e-3",
-    "policy_learner.alpha_learning_rate=1e-3",
-    "policy_learner.alpha=0.1",
-    "policy_learner.tau=0.02",
-    "policy_learner.discount=0.97",
+MODEL = ["model=gaussian", "model.hidden=[64]", "reward_model.hidden=[64]"]
+MODEL += [f"model_learner.{word}" for word in ("batch_size=64", "updates=2", "learning_rate=3e-3")]
+SAC = ["policy.hidden=[64,64]", "critic.hidden=[64,64]"]
+SAC += [
+    f"policy_learner.{word}"
+    for word in (
+        *("batch_size=64", "policy_learning_rate=2e-3", "critic_learning_rate=2e-3"),
+        *("alpha_learning_rate=1e-3", "alpha=0.1", "tau=0.02", "discount=0.97"),
+    )
 ]
 CASES = {  # method -> decisions, settings
     "nn_mppi": (800, [*MODEL, "planner.horizon=20", "planner.samples=32"]),  # -299 to -41

@@ -7,10 +7,9 @@ from typing import Any
 
 import pytest
 from omegaconf import OmegaConf
-from tiny import call, demonstrate
+from tiny import call_command, demonstrate
 
 from hybrid_rl import list as listed
-from hybrid_rl.cli import command
 from hybrid_rl.files.targets import part_class
 from hybrid_rl.settings import build as config
 from hybrid_rl.settings.groups import file
@@ -32,7 +31,7 @@ sys.exit(9 if "jax" in sys.modules else code)
 """
 
 
-show = partial(call, lambda: command.run(listed.main))
+show = partial(call_command, listed.main)
 
 
 @pytest.fixture

@@ -66,28 +66,25 @@ def test_a_changed_json_changes_the_marked_numbers_and_nothing_else(results):
     assert marks.written(table) == table
 
 
-@pytest.mark.parametrize(
-    ("expression", "expected"),
-    [
-        ('"made/rows/d/n", 7', [0.5, 7]),
-        ('"made/rows/a/b, c/n"', [0.25]),  # a label with a slash
-        ('"made/rows/kind=y/n"', [0.5]),
-        ('max("made/rows/*/n") - 1', [-0.5]),
-        ('"made/band"', [2, 1, 3]),
-        ('median("made/found")', [6]),  # null: never
-        ('sum("made/found" < 7)', [2]),
-        ('"made/hop/a@9"', [4, 7, 1]),
-        ('range("made/hop/a@end")', [4, 1, 7]),
-        ('mean(area("made/hop/a", 5))', [4]),
-        ('ahead("made/run/a@5", "made/hop/a@5")', [100, 100, 100]),
-        (
-            'p_within("made/run/a@5", "made/hop/a@5", "made/run/a@5", "made/hop/a@5")',
-            [0.0577795711],
-        ),
-        ('reached("made/after", 6), reached("made/after", 7)', [9, np.inf]),
-        ('peak("made/run/a"), peak_at("made/run/a")', [2000.4, 9]),
-    ],
-)
+EVALUATED = [
+    ('"made/rows/d/n", 7', [0.5, 7]),
+    ('"made/rows/a/b, c/n"', [0.25]),  # a label with a slash
+    ('"made/rows/kind=y/n"', [0.5]),
+    ('max("made/rows/*/n") - 1', [-0.5]),
+    ('"made/band"', [2, 1, 3]),
+    ('median("made/found")', [6]),  # null: never
+    ('sum("made/found" < 7)', [2]),
+    ('"made/hop/a@9"', [4, 7, 1]),
+    ('range("made/hop/a@end")', [4, 1, 7]),
+    ('mean(area("made/hop/a", 5))', [4]),
+    ('ahead("made/run/a@5", "made/hop/a@5")', [100, 100, 100]),
+    ('p_within("made/run/a@5", "made/hop/a@5", "made/run/a@5", "made/hop/a@5")', [0.0577795711]),
+    ('reached("made/after", 6), reached("made/after", 7)', [9, np.inf]),
+    ('peak("made/run/a"), peak_at("made/run/a")', [2000.4, 9]),
+]
+
+
+@pytest.mark.parametrize(("expression", "expected"), EVALUATED)
 def test_an_expression_is_evaluated(results, expression, expected):
     assert values.evaluated(expression) == pytest.approx(expected)
 

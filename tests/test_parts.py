@@ -23,9 +23,7 @@ def leaves(node: Any, path: tuple = ()) -> list[tuple]:
     pairs = node.items() if isinstance(node, dict) else enumerate(node)
     inner = [(*path, key) for key, _ in pairs]
     values = [node[key[-1]] for key in inner]
-    deep = [
-        leaves(v, key) for key, v in zip(inner, values, strict=True) if isinstance(v, dict | list)
-    ]
+    deep = [leaves(v, k) for k, v in zip(inner, values, strict=True) if isinstance(v, dict | list)]
     return [*inner, *(each for found in deep for each in found)]
 
 

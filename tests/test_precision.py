@@ -92,15 +92,12 @@ def test_information_is_measured_in_float32():
     """Of a model's weights, along a path; the model itself learns in bfloat16."""
     run = build(load("fisher", "task=pendulum", "algo=fisher"))
     with precision.using("bf16"):
-        state = jax.eval_shape(run.agent.init, jax.random.key(0))
+        key, of = jax.random.key(0), run.agent.learners
+        state = jax.eval_shape(run.agent.init, key)
         params = jax.eval_shape(run.agent.params, state)
-        learner = run.agent.learners["model"]
-        information = run.agent.learners["information"]
-        rows = jax.eval_shape(
-            lambda memory: run.agent._batch(memory, information, params, jax.random.key(0)),
-            state.memory,
-        )
-        key = jax.random.key(0)
+        learner, information = of["model"], of["information"]
+        batch = lambda memory: run.agent._batch(memory, information, params, key)  # noqa: E731
+        rows = jax.eval_shape(batch, state.memory)
         of_model = products(learner.update, state.learners["model"], params, rows, key)[0]
         measured = products(information.update, state.learners["information"], params, rows, key)
     assert "bf16" in of_model

@@ -5,10 +5,9 @@ from functools import partial
 
 import numpy as np
 import pytest
-from tiny import call, refusal
+from tiny import call_command, refusal
 
 from hybrid_rl import evaluate
-from hybrid_rl.cli import command
 from hybrid_rl.data import archive
 from hybrid_rl.run.saved import names, read
 from hybrid_rl.settings import build as config
@@ -39,7 +38,7 @@ def test_a_policy_of_the_package_is_small_and_has_its_origin(name):
 
 def test_evaluating_it_gives_its_number(capsys):
     """On the lander, whose episodes are short."""
-    main = partial(call, lambda: command.run(evaluate.main))
+    main = partial(call_command, evaluate.main)
     assert main("policy=lander") == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith("trained by: python -m hybrid_rl.train task=lander algo=analytic")

@@ -7,7 +7,7 @@ import sys
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from types import ModuleType
+from types import SimpleNamespace
 from unittest.mock import Mock
 
 import jax
@@ -26,9 +26,8 @@ from hybrid_rl.run.session import Session
 pytestmark = pytest.mark.turns(3)
 
 ROOT = Path(__file__).resolve().parents[1]
-README, PAGE = (
-    (ROOT / page).read_text(encoding="utf-8") for page in ("README.md", "docs/python.md")
-)
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs/python.md").read_text(encoding="utf-8")
 SIZES = {"total_steps": 200, "random_steps": 20, "eval_every": 100}
 
 
@@ -223,31 +222,18 @@ def test_both_plans_agree_under_vmap():
         assert (actions[1, 0] < -0.2).all()
 
 
-def curve():
-    """Two seeds, one of which has a value less."""
-    each = np.array([[1.0, 2.0], [3.0, np.nan]])
-    return Curve(
-        "t", "m", "l", (4, 5), ("a", "a"), np.array([10.0, 20.0]), each, *each[[0, 0, 0]], ()
-    )
-
-
 def test_a_curve_is_a_table_of_its_values(monkeypatch):
-    pandas = ModuleType("pandas")
-    pandas.DataFrame = dict
-    monkeypatch.setitem(sys.modules, "pandas", pandas)
-    table = curve().frame()
+    """Of two seeds, one of which has a value less."""
+    monkeypatch.setitem(sys.modules, "pandas", SimpleNamespace(DataFrame=dict))
+    x, each = np.array([10.0, 20.0]), np.array([[1.0, 2.0], [3.0, np.nan]])
+    table = Curve("t", "m", "l", (4, 5), ("a", "a"), x, each, *each[[0, 0, 0]], ()).frame()
     assert [table[name] for name in ("task", "label", "metric")] == ["t", "l", "m"]
-    assert [table[name].tolist() for name in ("seed", "x", "value")] == [
-        [4, 4, 5],
-        [10.0, 20.0, 10.0],
-        [1.0, 2.0, 3.0],
-    ]
+    wanted = [[4, 4, 5], [10.0, 20.0, 10.0], [1.0, 2.0, 3.0]]
+    assert [table[name].tolist() for name in ("seed", "x", "value")] == wanted
 
 
 def test_the_rows_of_runs_are_a_table(monkeypatch, tmp_path):
-    pandas = ModuleType("pandas")
-    pandas.DataFrame = list
-    monkeypatch.setitem(sys.modules, "pandas", pandas)
+    monkeypatch.setitem(sys.modules, "pandas", SimpleNamespace(DataFrame=list))
     rows = [{"step": 4, "seed": 0, "wall_s": 1.0, "eval/return": 2.0}]
     rows.append({"step": 4, "seed": 1, "wall_s": 1.0, "model/loss": 3.0})
     (tmp_path / "metrics.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))

@@ -115,11 +115,9 @@ def wrong(kind: Any) -> Any:
 
 @pytest.mark.parametrize("name", sorted(PARTS))
 def test_a_field_out_of_its_range_is_refused_by_its_name(name: str) -> None:
-    kind = PARTS[name]
-    needed = {
-        f.name: given(f.type) for f in fields(kind) if f.default is f.default_factory is MISSING
-    }
-    for field in fields(kind):
+    kind, own = PARTS[name], fields(PARTS[name])
+    needed = {f.name: given(f.type) for f in own if f.default is f.default_factory is MISSING}
+    for field in own:
         if f"{name}.{field.name}" in FREE:
             continue
         for value in filter(lambda x: x is not None, map(wrong, choices(field.type))):
@@ -145,6 +143,7 @@ NOTHING: Any = object()
 TERMS = {"a": speed(), "b": speed()}
 ONES = {"a": 1.0, "b": 1.0}
 WHITE = NoiseProposal()
+BOTH = MixtureProposal(WHITE, WHITE)
 KEY = jax.random.key(0)
 PATHLESS = Mixture(((0.1,),), (1.0,), (1.0,))
 GAUSSIAN = Gaussian(hidden=(8,))
@@ -168,10 +167,7 @@ def branches(**given: Any) -> Any:
 TOGETHER = [  # what is made, and how the line begins, behind the name of the part
     (lambda: AdjointController(CART, speed()), "gain=null: "),
     (lambda: GradientController(World(CART), speed()), "model=World: "),
-    (
-        lambda: SamplingController(CART, speed(), MixtureProposal(WHITE, WHITE), log_density=True),
-        "log_density=true: ",
-    ),
+    (lambda: SamplingController(CART, speed(), BOTH, log_density=True), "log_density=true: "),
     (lambda: GoalController(PATHLESS, BOX, ahead=4), "ahead=4: "),
     (dagger(candidates=10, spread=0.2), "target=null: .*candidates"),
     (dagger(better=True), "target=null: .*queries"),

@@ -9,11 +9,10 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from scenes import FIXED
-from tiny import call, refusal
+from tiny import call_command, refusal
 
 from hybrid_rl import render
 from hybrid_rl.analysis import drawing
-from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.run.saved import Trained
 from hybrid_rl.training.episode import Episode
@@ -73,7 +72,7 @@ def trained(monkeypatch):
     return run
 
 
-draw = partial(call, lambda: command.run(render.main))
+draw = partial(call_command, render.main, "width=64", "height=48")
 
 
 def test_an_episode_ends_where_the_world_ends(trained):
@@ -87,7 +86,7 @@ def test_an_episode_ends_where_the_world_ends(trained):
 
 
 def test_the_command_writes_a_video_in_real_time(trained, tmp_path, capsys, draws):
-    assert draw(f"run={tmp_path}", "width=64", "height=48") == 0
+    assert draw(f"run={tmp_path}") == 0
     out = tmp_path / "video.mp4"
     assert iio.immeta(out, plugin="pyav")["fps"] == pytest.approx(10)
     assert len(iio.imread(out, plugin="pyav")) == 6
@@ -98,8 +97,7 @@ def test_the_command_writes_a_video_in_real_time(trained, tmp_path, capsys, draw
 
 def test_the_expert_of_a_task_is_drawn_too(tmp_path, capsys, draws):
     """Two decisions of Sawyer's."""
-    small = ["width=64", "height=48", "episode_steps=2"]
-    assert draw("task=sawyer_push", f"out={tmp_path}/a.mp4", *small) == 0
+    assert draw("task=sawyer_push", f"out={tmp_path}/a.mp4", "episode_steps=2") == 0
     assert len(iio.imread(tmp_path / "a.mp4", plugin="pyav")) == 3
     assert capsys.readouterr().out.splitlines()[-1].endswith(", no success, scripted expert")
 
@@ -127,8 +125,7 @@ def test_success_is_that_of_the_end(trained):
 
 def test_pictures_side_by_side(trained, tmp_path, capsys, draws):
     """After the decisions that are asked for; the last one again after the end, with a line."""
-    small = ["width=64", "height=48", f"out={tmp_path / 'a.png'}"]
-    assert draw("run=x", "at=0,5,20", *small) == 0
+    assert draw("run=x", "at=0,5,20", f"out={tmp_path / 'a.png'}") == 0
     printed = capsys.readouterr().out
     assert "at=20: the episode ends after 5 decisions, shown instead" in printed
     first, middle, last = np.split(iio.imread(tmp_path / "a.png"), 3, axis=1)
@@ -167,8 +164,7 @@ def test_a_processor_draws_the_beginning_unless_asked_for_more(
     """The box falls off after 5 decisions; three pictures after the first are the default."""
     monkeypatch.setattr(offscreen, "by_processor", lambda: by_processor)
     monkeypatch.setattr(drawing, "FIRST", 3)
-    small = ["width=64", "height=48", f"out={tmp_path / 'a.mp4'}"]
-    assert draw("run=x", *small, *more) == 0
+    assert draw("run=x", f"out={tmp_path / 'a.mp4'}", *more) == 0
     assert len(iio.imread(tmp_path / "a.mp4", plugin="pyav")) == pictures
     line = "the beginning, as there is no graphics card; all: episode_steps=20"
     assert (line in capsys.readouterr().out.splitlines()) == (by_processor and not more)
@@ -176,8 +172,7 @@ def test_a_processor_draws_the_beginning_unless_asked_for_more(
 
 def test_a_still_is_of_the_whole_episode(trained, tmp_path, monkeypatch, draws):
     monkeypatch.setattr(drawing, "FIRST", 1)
-    small = ["width=64", "height=48", f"out={tmp_path / 'a.png'}"]
-    assert draw("run=x", *small) == 0
+    assert draw("run=x", f"out={tmp_path / 'a.png'}") == 0
     poses = drawing.episode(trained).poses
     middle = next(drawing.frames(FIXED, poses[len(poses) // 2][None], 64, 48))
     np.testing.assert_array_equal(iio.imread(tmp_path / "a.png"), middle)
@@ -188,6 +183,6 @@ def test_a_fast_world_skips_pictures(trained, tmp_path, can_draw):
     fast = Slider(end=9, spec=SPEC._replace(dt=0.005))
     trained.episode = Episode(fast, steps=20)
     if can_draw:
-        assert draw("run=x", f"out={tmp_path}/a.mp4", "width=64", "height=48") == 0
+        assert draw("run=x", f"out={tmp_path}/a.mp4") == 0
         assert iio.immeta(tmp_path / "a.mp4", plugin="pyav")["fps"] == pytest.approx(50)
         assert len(iio.imread(tmp_path / "a.mp4", plugin="pyav")) == 3

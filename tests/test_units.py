@@ -73,9 +73,8 @@ def test_robots_in_other_units_start_at_the_same_positions() -> None:
     """Also where the first candidates are in an object."""
     starts = []
     for factor in (1.0, 1e-3):
-        world = ContactPlane(
-            objects=scaled(factor), radius=0.03 * factor, high=(1.2 * factor, factor)
-        )
+        high = (1.2 * factor, factor)
+        world = ContactPlane(objects=scaled(factor), radius=0.03 * factor, high=high)
         keys = jax.random.split(jax.random.key(0), 64)
         starts.append(np.asarray(jax.jit(jax.vmap(world.reset))(keys).obs) / factor)
     np.testing.assert_allclose(*starts, rtol=1e-5)

@@ -69,6 +69,11 @@ def call(main: Callable[[], None], *arguments: str | Path) -> int:
     return 0
 
 
+def call_command(main: Callable[[], None], *arguments: str | Path) -> int:
+    """Exit code of a command that reports what goes wrong, as in a process of its own."""
+    return call(lambda: command.run(main), *arguments)
+
+
 def call_train(*arguments: str | Path) -> int:
     """Exit code of `python -m hybrid_rl.train`."""
     with shared():
@@ -141,6 +146,6 @@ def refusal(
     code: int = 2,
 ) -> str:
     """The one line with which a command, train if none is given, ends with this exit code."""
-    ended = call_train(*arguments) if of is None else call(lambda: command.run(of), *arguments)
+    ended = call_train(*arguments) if of is None else call_command(of, *arguments)
     assert ended == code
     return only_line(capfd)

@@ -77,9 +77,7 @@ class Goal:
     def init(self, spec: Spec) -> Array:
         return jnp.full(spec.act, jnp.nan)
 
-    def prepare(
-        self, params: Params, memory: Array, x: Array, u_before: Array, key: Array
-    ) -> tuple[Callable[[Path], Array], Array]:
+    def prepare(self, params: Any, memory: Array, x: Array, u_before: Array, key: Array) -> tuple:
         return self.value, u_before
 
 

@@ -253,10 +253,8 @@ def test_runs_of_other_settings_are_other_curves(tmp_path):
     one, two = curves(tmp_path)
     assert (one.label, one.seeds) == ("sac reward=gymnasium", (0,))
     assert (two.label, two.seeds, two.notes) == ("sac reward=pybullet", (1, 2), ())
-    assert [c.label for c in curves(tmp_path, group="env.reward")] == [
-        "env.reward=gymnasium",
-        "env.reward=pybullet",
-    ]
+    labels = [curve.label for curve in curves(tmp_path, group="env.reward")]
+    assert labels == ["env.reward=gymnasium", "env.reward=pybullet"]
 
 
 def test_many_differences_become_letters_with_a_note(tmp_path):
@@ -276,9 +274,8 @@ def test_groups_are_tasks_and_algorithms_or_any_key(tmp_path):
     named = [(curve.task, curve.label) for curve in curves(tmp_path, group="replay.capacity")]
     assert named[1:] == [("hopper", "replay.capacity=5"), ("hopper", "replay.capacity=6")]
     run(tmp_path / "d", [4.0], num_envs=4, replay="{capacity: null}")
-    assert "replay.capacity=null" in [
-        curve.label for curve in curves(tmp_path, group="replay.capacity")
-    ]
+    labels = [curve.label for curve in curves(tmp_path, group="replay.capacity")]
+    assert "replay.capacity=null" in labels
     with pytest.raises(UsageError, match=r"group=replay.capacity.more: not in .*config.yaml"):
         curves(tmp_path, group="replay.capacity.more")
     with pytest.raises(UsageError, match=r"group=nothing: not in .*config.yaml"):

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from tiny import call
+from tiny import call_command
 
 from hybrid_rl import figures
 from hybrid_rl.analysis import tables
@@ -23,7 +23,6 @@ from hybrid_rl.analysis.learning_curves import (
     to_numbers,
 )
 from hybrid_rl.analysis.style import BLUE, GREEN
-from hybrid_rl.cli import command
 from hybrid_rl.errors import UsageError
 from hybrid_rl.figures import save
 
@@ -67,13 +66,10 @@ def test_labels_carry_units_and_thousands():
 @pytest.mark.parametrize(("tasks", "labels"), [(1, 1), (1, 9), (3, 4)])
 def test_legends_and_notes_cover_no_axes(tasks, labels):
     """By their boxes in the rendered picture; and all are inside the picture."""
-    names = itertools.product([f"task{i}" for i in range(tasks)], range(labels))
-    drawn = [
-        replace(
-            curve(task, f"a_method_with_a_long_name_{i}"), notes=(f"{task}, {i}: " + 30 * "word ",)
-        )
-        for task, i in names
-    ]
+    drawn = []
+    for task, i in itertools.product([f"task{i}" for i in range(tasks)], range(labels)):
+        one = curve(task, f"a_method_with_a_long_name_{i}")
+        drawn.append(replace(one, notes=(f"{task}, {i}: " + 30 * "word ",)))
     figure = plot(drawn)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
@@ -126,7 +122,7 @@ def test_a_picture_is_redrawn_from_its_numbers(tmp_path):
         for old, new in zip(drawn, again, strict=True):
             np.testing.assert_allclose(getattr(new, name), getattr(old, name), rtol=1e-6)
     first, second = (
-        call(lambda: command.run(figures.main), f"{key}={source}", f"out={tmp_path / name}.svg")
+        call_command(figures.main, f"{key}={source}", f"out={tmp_path / name}.svg")
         for key, name in (("runs", "a"), ("from", "b"))
     )
     assert (first, second) == (0, 0)
@@ -154,7 +150,7 @@ def test_a_table_has_a_row_for_each_value_of_each_seed(tmp_path, capsys):
     drawn = [one, curve("ant", "hybrid, long", seeds=1, points=3)]
     save(plot(drawn), numbers_of(drawn, "eval/return"), tmp_path / "a.png")
     arguments = f"runs={tmp_path / 'a.json'}", f"out={tmp_path / 'a.csv'}"
-    assert call(lambda: command.run(figures.main), *arguments) == 0
+    assert call_command(figures.main, *arguments) == 0
     assert capsys.readouterr().out.splitlines()[-1] == str(tmp_path / "a.csv")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.csv", "a.json", "a.png"]
     with (tmp_path / "a.csv").open(newline="") as file:

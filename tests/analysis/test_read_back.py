@@ -38,9 +38,8 @@ def test_a_newer_checkpoint_is_read_once(folder, tmp_path):
 
 
 def test_a_scripted_expert_acts_in_its_task():
-    episode, controller = hr.expert(
-        "halfcheetah", ["expert=babble", "env.mass=2", "expert.level=0.5"]
-    )
+    words = ["expert=babble", "env.mass=2", "expert.level=0.5"]
+    episode, controller = hr.expert("halfcheetah", words)
     assert (episode.env.mass, controller.level) == (2, 0.5)
 
 

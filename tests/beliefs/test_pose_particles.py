@@ -20,9 +20,8 @@ SPEC = Spec(obs=4, act=2, dt=0.1)
 SHAPES = ((0.35, 0.6, 0.3, 0.2, 0.06, 0.02), (0.62, 0.4, 0.0, 0.05, 0.05, 0.05))
 WORLD = ContactPlane(objects=SHAPES)
 MAP = KnownMap(WORLD, width=0.03, low=0.05, high=0.95)
-BELIEF = PoseParticles(
-    MAP, Box((0, 1), (0.3, 0.3), (0.7, 0.7)), particles=1500, capacity=60, every=5
-)
+BOX = Box((0, 1), (0.3, 0.3), (0.7, 0.7))
+BELIEF = PoseParticles(MAP, BOX, particles=1500, capacity=60, every=5)
 TRUE = np.array([0.45, 0.55, 0.9])
 
 
@@ -151,9 +150,8 @@ def test_information_follows_its_formulas(few) -> None:
     steps = h * np.eye(3)
     g = [(chance(theta + d, s[None]) - chance(theta - d, s[None]))[:, 0] / (2 * h) for d in steps]
     g = np.stack(g, -1) / [1, 1, 0.3] / np.sqrt(p * (1 - p))[:, None]
-    assert float(jax.jit(belief.information)(state, at)) == pytest.approx(
-        (g**2).sum(1).mean(), rel=1e-3
-    )
+    got = jax.jit(belief.information)(state, at)
+    assert float(got) == pytest.approx((g**2).sum(1).mean(), rel=1e-3)
     det = np.linalg.det(np.mean(g[:, :, None] * g[:, None], 0))
     got = jax.jit(replace(belief, measure="det").information)(state, at)
     assert float(got) == pytest.approx(det, rel=1e-2)

@@ -52,22 +52,18 @@ def test_predictions_follow_the_decision_function(measured) -> None:
     got, std = predict(state, jnp.asarray(s))
     np.testing.assert_allclose([got, std], [p, np.sqrt(p * (1 - p))], rtol=1e-4)
     entropy = -p * np.log(p) - (1 - p) * np.log(1 - p)
-    assert float(jax.jit(BELIEF.gain)(state, jnp.asarray(s))) == pytest.approx(entropy, rel=1e-4)
+    at = jnp.asarray(s)
+    assert float(jax.jit(BELIEF.gain)(state, at)) == pytest.approx(entropy, rel=1e-4)
     way = np.array([[0.5, 0.2], [0.4, 0.3], [0.1, 0.6]], np.float32)
     each = [1 / (1 + np.exp(-2 * f(one))) for one in way]
     both = -sum(p * np.log(p) + (1 - p) * np.log(1 - p) for p in each)
-    assert float(jax.jit(BELIEF.gain_along)(state, jnp.asarray(way))) == pytest.approx(
-        both, rel=1e-4
-    )
+    got = jax.jit(BELIEF.gain_along)(state, jnp.asarray(way))
+    assert float(got) == pytest.approx(both, rel=1e-4)
     slope = [(f(s + d) - f(s - d)) / 2e-3 for d in np.eye(2) * 1e-3]
-    assert float(jax.jit(BELIEF.information)(state, jnp.asarray(s))) == pytest.approx(
-        p * (1 - p), rel=1e-4
-    )
+    assert float(jax.jit(BELIEF.information)(state, at)) == pytest.approx(p * (1 - p), rel=1e-4)
     fisher = replace(BELIEF, measure="fisher")
     want = p * (1 - p) * 4 * np.dot(slope, slope)
-    assert float(jax.jit(fisher.information)(state, jnp.asarray(s))) == pytest.approx(
-        want, rel=1e-2
-    )
+    assert float(jax.jit(fisher.information)(state, at)) == pytest.approx(want, rel=1e-2)
 
 
 def test_losses_are_those_before_the_measurement_and_fall(measured) -> None:
@@ -178,9 +174,7 @@ def test_a_full_machine_adds_weight_to_the_nearest_point_of_the_same_label() -> 
     assert int(machine.count) == 2
     single = learn(s[:1], np.array([-1.0]), 1.0, capacity=1)
     dropped = svm.add(single, s[1], jnp.float32(1), LENGTH, 0.0)
-    assert [np.asarray(leaf).tolist() for leaf in dropped] == [
-        np.asarray(leaf).tolist() for leaf in single
-    ]
+    jax.tree.map(np.testing.assert_array_equal, dropped, single)
 
 
 def write() -> None:

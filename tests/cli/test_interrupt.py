@@ -134,9 +134,8 @@ def test_signals_that_come_together_ask_once():
 
 
 def test_a_process_under_nohup_is_deaf_to_its_terminal():
-    code = BEGIN.replace(
-        "interrupt.install", "signal.signal(signal.SIGHUP, signal.SIG_IGN)\ninterrupt.install"
-    )
+    ignored = "signal.signal(signal.SIGHUP, signal.SIG_IGN)\ninterrupt.install"
+    code = BEGIN.replace("interrupt.install", ignored)
     code += "with interrupt.as_call(say):\n    signal.raise_signal(signal.SIGHUP)\n"
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")

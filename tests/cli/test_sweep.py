@@ -27,6 +27,14 @@ def alone(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
 
+@pytest.fixture
+def given(monkeypatch):
+    """The configurations of the jobs, which do nothing else."""
+    configs = []
+    monkeypatch.setattr(train, "_job", lambda config, typed: configs.append(config))
+    return configs
+
+
 def table(folder):
     """What jobs.json of the only sweep says."""
     (file,) = (folder / "runs" / "sweeps").glob("*/jobs.json")
@@ -74,27 +82,28 @@ def test_a_job_that_cannot_run_is_found_before_the_first(tmp_path, capfd, given,
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_choice_that_the_default_method_lacks(monkeypatch):
-    given = []
-    monkeypatch.setattr(train, "_job", lambda config, typed: given.append(config))
+def test_a_choice_that_the_default_method_lacks(given):
     assert call_train("-m", *TINY, "algo=kle3,kle3_jensen", "target=mixture") == 0
     assert [each.algo for each in given] == ["kle3", "kle3_jensen"]
 
 
-def test_a_sweep_may_be_imported_before_hydra_searches_for_plugins(tmp_path, monkeypatch):
+def test_a_sweep_may_be_imported_before_hydra_searches_for_plugins(given):
     """Hydra then executes the modules of its own sweepers again: there are two of each class."""
-    monkeypatch.setattr(train, "_job", lambda config, typed: None)
     importlib.import_module("hybrid_rl.cli.sweep")
     importlib.reload(basic_sweeper)
     assert call_train("-m", CONF, "algo=sac", "seed=0,1") == 0
-    assert [row["code"] for row in table(tmp_path)] == [0, 0]
+    assert [each.seed for each in given] == [0, 1]
 
 
-def test_jobs_with_one_run_dir_have_folders_in_it(monkeypatch):
-    given = []
-    monkeypatch.setattr(train, "_job", lambda config, typed: given.append(config.run_dir))
+def test_jobs_with_one_run_dir_have_folders_in_it(given):
     assert call_train("-m", *SHORT, "seed=0,2", 'run_dir="it\'s"') == 0
-    assert given == ["it's/0", "it's/1"]
+    assert [each.run_dir for each in given] == ["it's/0", "it's/1"]
+
+
+def test_jobs_in_one_of_many_worlds_have_folders_of_its_name(given):
+    line = ["task=gymnasium", "env.id=Pendulum-v1", "algo=sac", "seed=0,1"]
+    assert call_train("-m", CONF, *line) == 0
+    assert [each.run_dir.split("/")[:3] for each in given] == 2 * [["runs", "Pendulum-v1", "sac"]]
 
 
 def test_the_same_command_continues_a_sweep_that_was_stopped(tmp_path, capfd, monkeypatch):
@@ -139,14 +148,6 @@ def test_a_folder_that_cannot_be_made_is_one_line(tmp_path, capfd):
     assert call_train("-m", *SHORT, "seed=0,1", "hydra.sweep.dir=file") == 1
     assert only_line(capfd) == "hybrid_rl: [Errno 17] File exists: 'file'\n"
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
-
-
-def test_jobs_in_one_of_many_worlds_have_folders_of_its_name(tmp_path, monkeypatch):
-    given = []
-    monkeypatch.setattr(train, "_job", lambda config, typed: given.append(config.run_dir))
-    line = ["task=gymnasium", "env.id=Pendulum-v1", "algo=sac", "seed=0,1"]
-    assert call_train("-m", CONF, *line) == 0
-    assert [folder.split("/")[:3] for folder in given] == 2 * [["runs", "Pendulum-v1", "sac"]]
 
 
 def test_jobs_in_other_processes_are_shown_as_they_go(tmp_path):
@@ -205,11 +206,6 @@ def test_what_slurm_gets_and_refuses(tmp_path):
     sent = "hybrid_rl: hydra/launcher=submitit_slurm: the jobs could not be sent: "
     assert ours == sent + theirs
     assert done.stdout.splitlines()[-1] == "0 of 2 jobs done; not 0, 1"
-
-
-def test_without_slurm_it_is_one_line(monkeypatch, capfd):
-    monkeypatch.setenv("PATH", "")
-    assert "submitit_slurm: no srun here; start it where Slurm is" in refusal(capfd, *SLURM)
 
 
 def test_a_launcher_that_is_not_installed_names_its_extra():

@@ -49,9 +49,8 @@ def test_noise_of_sensors_violates_nothing() -> None:
     """The environment counts by what is, not by what a controller sees."""
     steady = Limit(WORLD, "speed", 8.5, norm=True)
     noisy = Episode(WORLD, 20, sensor_noise=5.0, constraint=steady)
-    states = jax.jit(
-        lambda: rollout(noisy, ConstantController(), Params(), jax.random.key(0), 20)
-    )()
+    resting, key = ConstantController(), jax.random.key(0)
+    states = jax.jit(lambda: rollout(noisy, resting, Params(), key, 20))()
     assert np.abs(states.obs[:, 2]).max() > 8.5
     assert float(states.clock.violations[-1]) == 0
 

@@ -52,9 +52,7 @@ def test_strength_is_chosen_by_the_goal() -> None:
 
 
 @pytest.mark.parametrize(("doubt", "pushes"), [(None, True), (0.9, True), (1.1, False)])
-def test_a_plan_acts_where_the_members_agree_that_it_beats_the_policy(
-    doubt: float | None, pushes: bool
-) -> None:
+def test_a_plan_acts_where_the_members_agree_that_it_beats_the_policy(doubt, pushes) -> None:
     """One member gains from a push to the right what two mean, the other nothing: mean = std."""
 
     @dataclass(frozen=True)

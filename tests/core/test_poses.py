@@ -105,12 +105,8 @@ def test_each_particle_is_drawn_in_proportion_to_its_weight() -> None:
     rng = np.random.default_rng(0)
     w = rng.dirichlet(np.ones(20))
     shifts = (np.arange(400) + 0.5) / 400
-    counts = np.stack(
-        [
-            np.bincount(poses.systematic(jnp.log(w), 50, jnp.float32(shift)), minlength=20)
-            for shift in shifts
-        ]
-    )
+    drawn = (poses.systematic(jnp.log(w), 50, jnp.float32(shift)) for shift in shifts)
+    counts = np.stack([np.bincount(each, minlength=20) for each in drawn])
     assert (counts.sum(1) == 50).all()
     assert (counts >= np.floor(50 * w - 1e-4)).all()
     assert (counts <= np.ceil(50 * w + 1e-4)).all()

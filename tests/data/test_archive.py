@@ -9,6 +9,7 @@ import pytest
 from foreign import no_plain_file
 
 from hybrid_rl.data import archive, demonstrations
+from hybrid_rl.data import trained as saved
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import saved as trained
 from hybrid_rl.types import Spec
@@ -86,6 +87,31 @@ def test_a_description_that_fits_nothing_is_one_line(tmp_path, policy, changes):
         trained.read(str(tmp_path / "a.npz"))
     assert str(caught.value).isprintable()
     assert not Path("ran").exists()
+
+
+EXTERNAL = {"_target_": "hybrid_rl.envs.adapters.external.External", "id": "", "make": ""}
+GAUSSIAN = {"_target_": "hybrid_rl.policies.tanh_gaussian.TanhGaussian"}
+
+
+@pytest.mark.parametrize("key", ["make", "id", "kwargs"])
+@pytest.mark.parametrize("name", ["subprocess:getoutput", "antigravity:A-v0"])
+def test_a_description_names_no_code_of_others(tmp_path, monkeypatch, policy, key, name):
+    """Whether its policy acts, or teaches in the configuration of another run."""
+    monkeypatch.chdir(tmp_path)
+    given = {"kwargs": {"cmd": "touch ran"}, key: {"cmd": name} if key == "kwargs" else name}
+    named = described(policy, env=EXTERNAL | given, policy=GAUSSIAN | {"activation": name})
+    np.savez("theirs.npz", **named)
+    for read in (trained.read, saved.described):
+        with pytest.raises(ValueError, match=f"={name}: is no part of hybrid_rl"):
+            read("theirs.npz")
+    assert [*Path().iterdir()] == [Path("theirs.npz")]
+
+
+@pytest.mark.parametrize("key", ["env", "objective", "new"])
+def test_a_description_has_no_interpolations(tmp_path, policy, key):
+    np.savez(tmp_path / "a.npz", **described(policy, **{key: {"task": "${oc.env:HOME}"}}))
+    with pytest.raises(UsageError, match="is an interpolation; it must be a plain value"):
+        trained.read(str(tmp_path / "a.npz"))
 
 
 def test_a_description_does_not_name_its_own_file(tmp_path, policy):

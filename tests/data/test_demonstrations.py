@@ -38,9 +38,8 @@ def file(tmp_path: Path) -> Path:
 
 def loaded(file: Path, /, **fields: object) -> Transition:
     """The decisions that a task loads from it."""
-    return Demonstrations(
-        **{"file": str(file), "task": "pendulum", "world": Pendulum()} | fields
-    ).load()
+    given = {"file": str(file), "task": "pendulum", "world": Pendulum()}
+    return Demonstrations(**given | fields).load()
 
 
 def test_saved_decisions_are_loaded(file: Path) -> None:

@@ -7,10 +7,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from tiny import call, run
+from tiny import call_command, run
 
 from hybrid_rl import demonstrate
-from hybrid_rl.cli import command
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.data.trained import SavedPolicy, save
 from hybrid_rl.envs.analytic.pendulum import Pendulum
@@ -53,9 +52,7 @@ def test_parameters_come_back_bit_for_bit(file: Path) -> None:
     np.testing.assert_array_equal(trained.variance((), x), POLICY.variance(PARAMS, x))
 
 
-def test_a_started_policy_begins_with_the_parameters_of_the_file_and_acts_by_its_own(
-    file: Path,
-) -> None:
+def test_a_started_policy_begins_with_the_parameters_of_the_file_and_acts_by_its_own(file) -> None:
     """So it learns."""
     where = {"file": str(file), "task": "pendulum", "world": Pendulum()}
     started = StartedGaussian(POLICY.hidden, "sin", normalise=True, **where)
@@ -87,31 +84,26 @@ def test_the_policy_is_the_one_that_the_file_describes(file: Path) -> None:
         opened(file, policy=None)
 
 
-@pytest.mark.parametrize(
-    ("fields", "words"),
-    [
-        ({"world": PointMass()}, "is of obs 3; this run has obs 4"),
-        ({"policy": TanhGaussian((4, 4), "sin", normalise=True)}, r"bias is \(8,\); .* \(4,"),
-        ({"policy": TanhGaussian((8, 4), "sin")}, r"policy/state.* is .*; it must be absent"),
-        (
-            {"policy": TanhGaussian((8, 4, 2), "sin", normalise=True)},
-            "params/.* is absent; it must",
-        ),
-    ],
-)
+OTHERS = [
+    ({"world": PointMass()}, "is of obs 3; this run has obs 4"),
+    ({"policy": TanhGaussian((4, 4), "sin", normalise=True)}, r"bias is \(8,\); .* \(4,"),
+    ({"policy": TanhGaussian((8, 4), "sin")}, r"policy/state.* is .*; it must be absent"),
+    ({"policy": TanhGaussian((8, 4, 2), "sin", normalise=True)}, "params/.* is absent; it must"),
+]
+
+
+@pytest.mark.parametrize(("fields", "words"), OTHERS)
 def test_a_file_for_another_use_is_refused(file: Path, fields: dict, words: str) -> None:
     with pytest.raises(ValueError, match=words):
         opened(file, **fields)
 
 
-def test_the_policy_of_a_run_becomes_the_expert_of_its_task(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_policy_of_a_run_becomes_the_expert_of_its_task(tmp_path, monkeypatch) -> None:
     """The first seed's, whose actions are those of the run."""
     monkeypatch.chdir(tmp_path)
     run(tmp_path / "run", "algo=sac", "num_seeds=2")
     write = [f"run={tmp_path / 'run'}", "policy=policy.npz", "command=as above"]
-    assert call(lambda: command.run(demonstrate.main), *write) == 0
+    assert call_command(demonstrate.main, *write) == 0
     given = load(tmp_path / "run")
     line = ["task=pendulum", "algo=sac", "expert=trained"]
     expert = config.expert(config.load([*line, "expert.policy.file=policy.npz"]))
@@ -122,9 +114,7 @@ def test_the_policy_of_a_run_becomes_the_expert_of_its_task(
     want = given.controllers["policy"].act(first, (), x, jax.random.key(0))[0]
     np.testing.assert_array_equal(got, want)
     again = read("policy.npz")
-    assert (again.task, again.seeds, again.step, again.notes) == (
-        *("pendulum", (0,), given.step),
-        ("trained by: as above",),
-    )
+    assert (again.task, again.seeds, again.step) == ("pendulum", (0,), given.step)
+    assert again.notes == ("trained by: as above",)
     assert again.episode == given.episode
     np.testing.assert_allclose(again.policy()(x), want, atol=1e-6)

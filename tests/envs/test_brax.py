@@ -51,21 +51,13 @@ def test_brax_trainers_run_with_the_lines_of_the_docstring(monkeypatch):
     lines = re.findall(r"^    jax\.device_put_replicated = .*?^    \)$", brax.__doc__, re.M | re.S)
     monkeypatch.setattr(jax, "device_put_replicated", None, raising=False)  # undone at the end
     exec(textwrap.dedent(lines[0]), {"jax": jax})
-    few = partial(
-        networks.make_ppo_networks, policy_hidden_layer_sizes=(8,), value_hidden_layer_sizes=(8,)
-    )
+    hidden = {"policy_hidden_layer_sizes": (8,), "value_hidden_layer_sizes": (8,)}
+    few = partial(networks.make_ppo_networks, **hidden)
+    sizes = {"num_timesteps": 64, "episode_length": 8, "num_envs": 4, "batch_size": 4}
+    sizes |= {"num_minibatches": 1, "unroll_length": 4, "num_updates_per_batch": 1}
     with jax.numpy_rank_promotion("allow"):
         make, params, _ = train.train(
-            brax.BraxEnv(Pendulum()),
-            num_timesteps=64,
-            episode_length=8,
-            num_envs=4,
-            batch_size=4,
-            num_minibatches=1,
-            unroll_length=4,
-            num_updates_per_batch=1,
-            network_factory=few,
-            run_evals=False,
+            brax.BraxEnv(Pendulum()), **sizes, network_factory=few, run_evals=False
         )
         action, _ = make(params, deterministic=True)(jnp.ones(3), jax.random.PRNGKey(0))
     assert action.shape == (1,)

@@ -34,6 +34,14 @@ ARM = """<mujoco>
 </mujoco>"""
 
 
+def steered(env, state, goal, decisions):
+    """The state after these decisions, in which servos move to angles or positions `goal`."""
+    for _ in range(decisions):
+        u = jnp.clip((jnp.asarray(goal, jnp.float32) - state.info["servos"]) / STRIDE, -1, 1)
+        state = jitted(env, "step")(state, u)
+    return state
+
+
 @pytest.mark.parametrize(
     ("robot", "site", "tip"),
     [
@@ -71,10 +79,7 @@ def test_slides_alone_are_an_arm_and_no_pose_is_out_of_their_ranges():
     for seed in range(3):
         state = jitted(env, "reset")(jax.random.key(seed))
         goal = state.info["servos"] + (state.info["target"][:3] - env._tip(state.data.qpos)[0])[:2]
-        for _ in range(150):
-            u = jnp.clip((goal - state.info["servos"]) / STRIDE, -1, 1)
-            state = jitted(env, "step")(state, u)
-        assert state.metrics["success"] == 1
+        assert steered(env, state, goal, 150).metrics["success"] == 1
 
 
 def test_a_last_slide_that_moves_the_site_is_part_of_the_arm():
@@ -91,10 +96,7 @@ def test_a_last_slide_that_moves_the_site_is_part_of_the_arm():
     a = np.arctan2(y - 0.3 * np.sin(yaw), x - 0.3 * np.cos(yaw))
     goal = jnp.array([a, yaw - a, z - 0.5])
     assert abs(goal[2]) > 0.1
-    for _ in range(100):
-        u = jnp.clip((goal - state.info["servos"]) / STRIDE, -1, 1)
-        state = jitted(env, "step")(state, u)
-    assert state.metrics["success"] == 1
+    assert steered(env, state, goal, 100).metrics["success"] == 1
 
 
 def test_servos_that_move_to_the_angles_of_the_pose_reach_it():
@@ -104,10 +106,7 @@ def test_servos_that_move_to_the_angles_of_the_pose_reach_it():
     target, data = start.info["target"], mujoco.MjData(mjcf.load(env.scene()))
     goal = np.array([np.arctan2(target[1], target[0]), 0.0])
     goal[1] = np.arcsin(np.clip((0.5 - target[2]) / 0.3, -1, 1))
-    state = start
-    for _ in range(100):
-        u = jnp.clip((jnp.asarray(goal, jnp.float32) - state.info["servos"]) / STRIDE, -1, 1)
-        state = jitted(env, "step")(state, u)
+    state = steered(env, start, goal, 100)
     assert state.metrics["success"] == 1
     assert 1.4 < state.reward <= 1.5
     assert start.metrics["success"] == 0

@@ -71,17 +71,14 @@ WORLDS = [  # of WORLD: replaced, by what, the line after "w.py:LINE: W"
     ("    def step(self", EQUILIBRIUM, r"\.equilibrium: returned float32\[2\]; .* \(obs, action\)"),
     ("x = jax.random.uniform(key, (2,))", ABSENT, r"\.reset: ValueError: /rial\.xml: no such file"),
 ]
+FILE = r"my_conf/task/broken\.yaml"
 GYM = "_target_: gymnasium.make, id: Pendulum-v1"
 TASK_FILES = [  # of both: replaced, by what, the whole line
     ("gain: 2.0", "gian: 2.0", r"env: W\.__init__\(\) got an unexpected keyword argument 'gian'"),
     ("w.W", "w.V", r"env\._target_=w\.V: w\.py has no class V"),
     ("state, action):", "state, action:", r"env\._target_=w\.W: w\.py:20: '\(' was never closed"),
-    (
-        "# @package _global_\n",
-        "",
-        r"my_conf/task/broken\.yaml: its first line must be # @package.*",
-    ),
-    ("eval_episodes: 1\n", "", r"my_conf/task/broken\.yaml: lacks eval_episodes; .*"),
+    ("# @package _global_\n", "", rf"{FILE}: its first line must be # @package.*"),
+    ("eval_episodes: 1\n", "", rf"{FILE}: lacks eval_episodes; .*"),
     ("_target_: w.W, gain: 2.0", GYM, r"env\._target_=gymnasium\.make: makes a gymnasium\.Env, .*"),
 ]
 

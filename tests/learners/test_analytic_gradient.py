@@ -20,15 +20,9 @@ from hybrid_rl.types import Batch, Params
 
 WORLD = PointMass()
 POLICY = TanhGaussian((8,), "tanh")
-LEARNER = AnalyticGradient(
-    POLICY,
-    Exact(WORLD),
-    PredictedReturn(KnownReward(WORLD)),
-    WORLD,
-    horizon=6,
-    starts=3,
-    learning_rate=0.01,
-)
+RETURN = PredictedReturn(KnownReward(WORLD))
+SIZES: dict[str, Any] = {"horizon": 6, "starts": 3, "learning_rate": 0.01}
+LEARNER = AnalyticGradient(POLICY, Exact(WORLD), RETURN, WORLD, **SIZES)
 NOTHING = Batch(*(jnp.zeros(1) for _ in Batch._fields[:-1]))
 
 
@@ -54,21 +48,19 @@ def test_the_loss_and_its_gradient_are_those_of_episodes() -> None:
     state, key = begun(LEARNER, WORLD.spec), jax.random.key(1)
     plain = dataclasses.replace(LEARNER, clip=1e9)
     _, metrics = updated(plain, state, key)
-    assert float(metrics["analytic/policy_loss"]) == pytest.approx(
-        -float(mean_return(state.policy, key)), rel=1e-5
-    )
+    wanted = -float(mean_return(state.policy, key))
+    assert float(metrics["analytic/policy_loss"]) == pytest.approx(wanted, rel=1e-5)
     flat, build = jax.flatten_util.ravel_pytree(state.policy)
     h = 1e-2
     slopes = [
         (mean_return(build(flat + e), key) - mean_return(build(flat - e), key)) / (2 * h)
         for e in h * np.eye(len(flat), dtype=np.float32)[::9]
     ]
-    exact = jax.grad(
-        lambda flat: (
-            -updated(plain, state.replace(policy=build(flat)), key)[1]["analytic/policy_loss"]
-        )
-    )(flat)
+
+    def gained(flat: Any) -> Any:
+        return -updated(plain, state.replace(policy=build(flat)), key)[1]["analytic/policy_loss"]
+
+    exact = jax.grad(gained)(flat)
     np.testing.assert_allclose(exact[::9], slopes, atol=2e-4)
-    assert float(metrics["analytic/gradient_norm"]) == pytest.approx(
-        float(jnp.linalg.norm(exact)), rel=1e-4
-    )
+    norm = float(jnp.linalg.norm(exact))
+    assert float(metrics["analytic/gradient_norm"]) == pytest.approx(norm, rel=1e-4)

@@ -20,6 +20,7 @@ SPEC = Spec(obs=3, act=2, dt=0.1)
 GAIN = np.array([[0.25, -0.5, 0.125], [-0.125, 0.0625, 0.5]], np.float32)
 X: Any = np.random.default_rng(0).normal(size=(40, 3)).astype(np.float32)
 POLICY = Deterministic(hidden=(8,))
+RECORDING: dict[str, Any] = {"steps": 0, "capacity": 2000}  # without learning
 
 
 @dataclass(frozen=True)
@@ -84,9 +85,8 @@ def test_random_queries_are_spread_by_the_deviations_of_the_first_demonstration(
     """In units of them, or in those of the observation."""
     x = np.tile(np.array([[1.0, 0.0, 0.0], [-1.0, 4.0, 0.0]], np.float32), (1000, 1))
     for normalise, wanted in ((True, [0.2, 0.4, 0.2]), (False, [0.2, 0.2, 0.2])):
-        learner = DAgger(
-            POLICY, Linear(), spread=0.2, normalise=normalise, first=100, steps=0, capacity=2000
-        )
+        fields = {"spread": 0.2, "normalise": normalise, "first": 100, **RECORDING}
+        learner = DAgger(POLICY, Linear(), **fields)
         state = after(learner, x)
         np.testing.assert_array_equal(state.labels.obs[:100], x[:100])
         away = np.asarray(state.labels.obs[100:]) - x[100:]
@@ -97,9 +97,8 @@ def test_random_queries_are_spread_by_the_deviations_of_the_first_demonstration(
 def test_a_target_chooses_among_the_candidates() -> None:
     """The largest of ten normal deviations is 1.54 on average; the record has its value."""
     x = np.zeros((2000, 3), np.float32)
-    learner = DAgger(
-        POLICY, Linear(), Far(), candidates=10, spread=0.5, normalise=False, steps=0, capacity=2000
-    )
+    fields = {"candidates": 10, "spread": 0.5, "normalise": False, **RECORDING}
+    learner = DAgger(POLICY, Linear(), Far(), **fields)
     state = after(learner, x)
     assert float(state.labels.obs[:, 0].mean()) == pytest.approx(0.5 * 1.5388, rel=0.03)
     np.testing.assert_array_equal(state.information, state.labels.obs[:, 0])

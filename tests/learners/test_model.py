@@ -79,9 +79,8 @@ def test_where_episodes_end_is_learned_and_ends_the_return() -> None:
 
     def ending(key: Array) -> Batch:
         batch = draw(key)
-        return batch._replace(
-            reward=jnp.ones(128), terminated=(batch.obs[:, 0] > 0).astype(jnp.float32)
-        )
+        ends = (batch.obs[:, 0] > 0).astype(jnp.float32)
+        return batch._replace(reward=jnp.ones(128), terminated=ends)
 
     reward = RewardNetwork(hidden=(32,), ends=True)
     params = trained(ModelLearner(Gaussian(hidden=(8,)), reward), 2000, ending)

@@ -174,25 +174,25 @@ class Staying:
         return jnp.ones(()), jnp.log((1 - self.chance) / self.chance)
 
 
+def branching(world: Any, policy: Any, critic: Any, **given: Any) -> ModelBased:
+    """A learner in a known world, whose policy and entropy hardly matter."""
+    rates = {"critic_learning_rate": 3e-3, "alpha_learning_rate": 1e-9, "alpha": 1e-6}
+    given = {"steps": 3, "discount": 0.5, "tau": 0.05, "batch_size": 64, **rates, **given}
+    return ModelBased(policy, critic, world, world, **given)
+
+
 @pytest.mark.parametrize(
     ("value_steps", "chance", "wanted"),
     [(None, 1.0, 2.0), *((each, 0.5, 4 / 3) for each in (None, 1, 0))],
 )
-def test_the_critic_learns_the_imagined_returns(
-    value_steps: int | None, chance: float, wanted: float
-) -> None:
+def test_the_critic_learns_the_imagined_returns(value_steps, chance, wanted) -> None:
     """Q = 1 / (1 - c / 2), at three states, at the first, or by one decision, as in SAC.
 
     The rewards of the batch, which are larger, do not matter.
     """
-    world: Any = Staying(chance)
-    policy, critic = TanhGaussian(hidden=(32,)), EnsembleQ(hidden=(32, 32))
-    rates = {"critic_learning_rate": 3e-3, "alpha_learning_rate": 1e-9, "alpha": 1e-6}
-    learner = ModelBased(
-        *(policy, critic, world, world),
-        **{"steps": 3, "value_steps": value_steps, "branch_steps": 2, "branch_memory": 128},
-        **{"discount": 0.5, "tau": 0.05, "batch_size": 64, **rates},
-    )
+    critic, given = EnsembleQ(hidden=(32, 32)), {"branch_steps": 2, "branch_memory": 128}
+    parts = Staying(chance), TanhGaussian(hidden=(32,)), critic
+    learner = branching(*parts, value_steps=value_steps, **given)
     zero = jnp.zeros(64)
     seen = Batch(zero[:, None], zero[:, None], zero - 7, zero, zero, zero[:, None])
     state, _ = learned(learner, Spec(obs=1, act=1, dt=1.0), lambda key: seen, 1000)
@@ -215,14 +215,9 @@ class Leaving(Staying):
 @pytest.mark.parametrize("value_steps", [None, 0])
 def test_the_critic_stays_within_what_decisions_earned(value_steps: int | None) -> None:
     """3 in each of 1 / (1 - 0.5) decisions, though 2^9 are imagined; states change that much."""
-    world: Any = Leaving(1.0)
-    policy, critic = TanhGaussian((32,)), EnsembleQ((32, 32), normalise=True, scale=True)
-    rates = {"critic_learning_rate": 3e-3, "alpha_learning_rate": 1e-9, "alpha": 1e-6}
-    learner = ModelBased(
-        *(policy, critic, world, world),
-        **{"steps": 3, "value_steps": value_steps, "branch_steps": 9, "branch_memory": 576},
-        **{"discount": 0.5, "tau": 0.05, "batch_size": 64, **rates},
-    )
+    critic = EnsembleQ((32, 32), normalise=True, scale=True)
+    parts, given = (Leaving(1.0), TanhGaussian((32,)), critic), {"branch_memory": 576}
+    learner = branching(*parts, value_steps=value_steps, branch_steps=9, **given)
     zero, one = jnp.zeros(64), jnp.ones((64, 1))
     seen = Batch(one, one, zero - 3, zero, zero, 1000 * one)
     state, _ = learned(learner, Spec(obs=1, act=1, dt=1.0), lambda key: seen, 1000)
@@ -235,12 +230,8 @@ def test_the_critic_stays_within_what_decisions_earned(value_steps: int | None) 
 
 def test_imagined_states_change_by_no_more_than_real_ones() -> None:
     """Of nine decisions that would double it each time: by twice the 0.25 of the data."""
-    world: Any = Leaving(1.0)
-    learner = ModelBased(
-        *(TanhGaussian((8,)), EnsembleQ((8,)), world, world),
-        **{"steps": 3, "value_steps": 0, "branch_steps": 9, "change_limit": 2},
-        **{"branch_memory": 64, "batch_size": 64},
-    )
+    parts, given = (Leaving(1.0), TanhGaussian((8,)), EnsembleQ((8,))), {"branch_memory": 64}
+    learner = branching(*parts, value_steps=0, branch_steps=9, change_limit=2, **given)
     zero, one = jnp.zeros(64), jnp.ones((64, 1))
     moved = jnp.where(jnp.arange(64)[:, None] < 9, 0.2, -0.25)
     seen = Batch(one, one, zero, zero, zero, one + moved)

@@ -119,9 +119,8 @@ def test_a_hovering_quadcopter_has_the_gain_and_the_thrust_of_its_linearisation(
         none = jnp.zeros(len(obs))
         batch = Batch(*map(jnp.asarray, (obs, u)), none, none, none, jnp.asarray(after))
         state, _ = jax.jit(learner.update)(state, Params(), batch, jax.random.key(0))
-        regulator = RegulatorLearner(
-            model, Linear(), world, tuple(np.diag(Q)), tuple(np.diag(R)), horizon=1024
-        )
+        weights = tuple(np.diag(Q)), tuple(np.diag(R))
+        regulator = RegulatorLearner(model, Linear(), world, *weights, horizon=1024)
         policy = Linear().init(jax.random.key(0), world.spec._replace(state=9))
         policy = jax.tree.map(lambda x: x.astype(float), policy)
         solved = jax.jit(regulator.solve)(state.model, policy)
@@ -136,6 +135,5 @@ def test_a_hovering_quadcopter_has_the_gain_and_the_thrust_of_its_linearisation(
 
         A, B = linearised(reduced, jnp.zeros(8), hover)
     F = lqr(A, B, Q[np.ix_(moved, moved)], R)
-    np.testing.assert_allclose(
-        np.asarray(solved["gain"])[:, moved], F, rtol=0.01, atol=0.01 * np.abs(F).max()
-    )
+    gain = np.asarray(solved["gain"])[:, moved]
+    np.testing.assert_allclose(gain, F, rtol=0.01, atol=0.01 * np.abs(F).max())

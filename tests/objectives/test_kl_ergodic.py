@@ -204,28 +204,25 @@ def test_earlier_states_are_forgotten(forget, weights) -> None:
     np.testing.assert_allclose(got, all_weights @ features / all_weights.sum(), atol=1e-5)
 
 
-@pytest.mark.parametrize("algo", ["kle3", "fourier_ergodic"])
-def test_the_methods_visit_both_hills_of_their_target_with_their_defaults(algo) -> None:
-    """The regulator alone would rest in the trough between them."""
-    run = config.build(config.load(["task=point_mass", f"algo={algo}", "episode.steps=301"]))
-    walk = jax.jit(rollout_with_actions, static_argnums=(0, 1, 4))
-    episode, controller = run.agent.episode, run.controllers["full"]
-    x = np.asarray(walk(episode, controller, Params(), jax.random.key(0), 300)[1].obs)[:, :2]
-    near = [(np.linalg.norm(x - hill, axis=1) < 0.2).mean() for hill in (0.3, 0.7)]
-    assert min(near) > 0.25
-
-
-def explored(task: str, steps: int) -> EnvState:
-    """States of an episode of kle3 with its defaults."""
-    run = config.build(config.load([f"task={task}", "algo=kle3", f"episode.steps={steps + 1}"]))
+def explored(task: str, algo: str, steps: int) -> EnvState:
+    """States of an episode of a method with its defaults."""
+    run = config.build(config.load([f"task={task}", f"algo={algo}", f"episode.steps={steps + 1}"]))
     walk = jax.jit(rollout_with_actions, static_argnums=(0, 1, 4))
     episode, controller = run.agent.episode, run.controllers["full"]
     return walk(episode, controller, Params(), jax.random.key(0), steps)[1]
 
 
+@pytest.mark.parametrize("algo", ["kle3", "fourier_ergodic"])
+def test_the_methods_visit_both_hills_of_their_target_with_their_defaults(algo) -> None:
+    """The regulator alone would rest in the trough between them."""
+    x = np.asarray(explored("point_mass", algo, 300).obs)[:, :2]
+    near = [(np.linalg.norm(x - hill, axis=1) < 0.2).mean() for hill in (0.3, 0.7)]
+    assert min(near) > 0.25
+
+
 def test_the_defaults_explore_around_an_unstable_equilibrium() -> None:
     """The rods stay up, and the cart spends its time at the hills, where no regulator leads."""
-    states = explored("cart_double_pendulum", 500)
+    states = explored("cart_double_pendulum", "kle3", 500)
     assert not np.any(states.done)
     assert np.abs(states.obs[:, 1:3]).max() < 0.3
     assert np.mean(states.obs[200:, 0] > 0.2) > 0.5

@@ -36,9 +36,7 @@ def points_of(value: Any, monkeypatch) -> Any:
     """The points that J passes to `ergodic.divergence`."""
     seen = []
     with monkeypatch.context() as patch:
-        patch.setattr(
-            ergodic, "divergence", lambda points, *_: seen.append(points) or jnp.zeros(())
-        )
+        patch.setattr(ergodic, "divergence", lambda s, *_: seen.append(s) or jnp.zeros(()))
         value(Path(jnp.tile(X, (3, 1)), jnp.zeros((2, 1))))
     return seen[0]
 

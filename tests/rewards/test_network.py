@@ -44,14 +44,12 @@ def test_the_reward_of_several_networks_is_their_mean() -> None:
     outcome, loss = jax.jit(one.outcome), jax.jit(one.loss)
     outcomes = np.array([outcome(Params(reward=member), X, U, X) for member in each])
     assert outcomes.std(0).min() > 1e-3
-    np.testing.assert_allclose(
-        several.outcome(Params(reward=params), X, U, X), outcomes.mean(0), rtol=1e-5
-    )
+    got = several.outcome(Params(reward=params), X, U, X)
+    np.testing.assert_allclose(got, outcomes.mean(0), rtol=1e-5)
     target, ended = jnp.float32(2.0), jnp.float32(1.0)
     losses = [loss(member, X, U, X, target, ended) for member in each]
-    np.testing.assert_allclose(
-        several.loss(params, X, U, X, target, ended), np.mean(losses), rtol=1e-5
-    )
+    got = several.loss(params, X, U, X, target, ended)
+    np.testing.assert_allclose(got, np.mean(losses), rtol=1e-5)
 
 
 def test_the_next_state_is_an_input() -> None:

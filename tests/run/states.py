@@ -21,6 +21,7 @@ def state_at(step: int) -> State:
             "list": [jnp.full((5,), -0.0), (jnp.asarray(nan), jnp.bfloat16(1.1))],
             "count": jnp.int32(step),
             "mask": jnp.array([False, False]),
+            "rbg": jax.random.key(step, impl="rbg"),
         },
         replay={"obs": jnp.zeros((20, 3)).at[3].set(step), "none": jnp.zeros((0, 4), jnp.uint8)},
         key=jax.random.split(jax.random.key(step), 3),

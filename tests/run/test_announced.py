@@ -21,9 +21,7 @@ def test_the_result_is_that_of_the_policy_where_only_it_is_evaluated(tmp_path, c
 
 
 @pytest.mark.parametrize(("step", "saved"), [(60, False), (150, True)])
-def test_after_a_fault_of_the_world_it_says_how_to_go_on(
-    monkeypatch, tmp_path, capsys, step, saved
-):
+def test_after_a_fault_of_a_world_it_says_how_to_go_on(monkeypatch, tmp_path, capsys, step, saved):
     folder = tmp_path / "it's"
 
     def broken(session):

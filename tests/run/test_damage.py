@@ -8,10 +8,9 @@ import programs
 import pytest
 from states import flip
 from test_session import break_learner
-from tiny import TINY, call, call_train, contents, finished, limited, refusal, summary_of
+from tiny import TINY, call_command, call_train, contents, finished, limited, refusal, summary_of
 
 from hybrid_rl import evaluate, export
-from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.evaluations import Evaluations
@@ -23,10 +22,10 @@ trained = finished("algo=sac")  # a run that is done
 
 def test_a_damaged_checkpoint_is_passed_over(copied, capfd):
     flip(copied / "checkpoints" / "600")
-    assert call(lambda: command.run(evaluate.main), f"run={copied}", "episodes=1") == 0
+    assert call_command(evaluate.main, f"run={copied}", "episodes=1") == 0
     assert "checkpoint 600 is skipped" in " ".join(capfd.readouterr().out.split())
     assert json.loads((copied / "evaluation_full.json").read_text())["step"] == 500
-    assert call(lambda: command.run(export.main), f"run={copied}", f"out={copied}/a.stablehlo") == 0
+    assert call_command(export.main, f"run={copied}", f"out={copied}/a.stablehlo") == 0
     assert capfd.readouterr().out.count("checkpoint 600 is skipped") == 1
     assert call_train(f"resume={copied}") == 0
     printed = capfd.readouterr()

@@ -67,9 +67,8 @@ def test_a_run_goes_on_only_with_the_settings_that_it_began_with(copied, capfd):
     """Though such a configuration builds, and its checkpoint fits."""
     path = copied / "config.yaml"
     text = path.read_text()
-    path.write_text(
-        text.replace("capacity: 200", "capacity: 300").replace("_rate: 0.0003", "_rate: 3")
-    )
+    other = text.replace("capacity: 200", "capacity: 300")
+    path.write_text(other.replace("_rate: 0.0003", "_rate: 3"))
     before = contents(copied)
     line = refusal(capfd, f"resume={copied}", "total_steps=200")
     assert line.startswith(f"hybrid_rl: {path}: ")

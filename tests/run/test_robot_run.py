@@ -10,11 +10,10 @@ import time
 
 import numpy as np
 import pytest
-from tiny import call, refusal
+from tiny import call_command, refusal
 
 import hybrid_rl
 from hybrid_rl import evaluate, robot
-from hybrid_rl.cli import command
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.adapters.stand_in import ACTION, MOVED, RESET, Cartpole
 from hybrid_rl.envs.adapters.unstepped import ALONE
@@ -72,7 +71,7 @@ def test_a_run_on_a_robot(port, tmp_path, capfd):
     assert moved.returncode == 0, moved.stderr
     assert int(re.search(r"(\d+) decisions, ", moved.stdout)[1]) > 10
     capfd.readouterr()
-    assert call(lambda: command.run(evaluate.main), f"run={folder}") == 2
+    assert call_command(evaluate.main, f"run={folder}") == 2
     printed = capfd.readouterr()
     assert printed.err == f"hybrid_rl: hybrid_rl.envs.adapters.stand_in_Cartpole: {ALONE}\n"
     assert "compiling" not in printed.out

@@ -218,9 +218,7 @@ def test_the_speed_is_that_of_learning(whole):
     assert speed.rate == 50
 
 
-def test_with_debug_nans_a_run_ends_in_the_call_that_made_them_and_not_before(
-    tmp_path, monkeypatch
-):
+def test_with_debug_nans_a_run_ends_in_the_call_that_made_one_and_not_before(tmp_path, monkeypatch):
     """Metrics that do not apply are NaN, too; here no metric tells what was learned."""
     monkeypatch.setattr(session.records, "infinite", lambda *_: {})
     break_learner(monkeypatch, 0, 200)

@@ -1,9 +1,8 @@
 """The first minute."""
 
 import pytest
-from tiny import call, refusal
+from tiny import call_command, refusal
 
-from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.tools import demo
 
@@ -13,7 +12,7 @@ def test_it_shows_a_robot_and_what_to_type_next(tmp_path, monkeypatch, capsys, c
     monkeypatch.setattr(demo, "SHOWN", 3)
     out = tmp_path / "robot.mp4"
     words = ["policy=pendulum", f"out={out}", "window=false"]
-    assert call(lambda: command.run(demo.main), *words) == 0
+    assert call_command(demo.main, *words) == 0
     printed = capsys.readouterr().out
     assert "trained policies: ant, cartpole" in printed
     assert "pendulum: 3 decisions, return" in printed

@@ -6,10 +6,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from tiny import call, finished, summary_of
+from tiny import call_command, finished, summary_of
 
 from hybrid_rl.analysis.results import RunFolder
-from hybrid_rl.cli import command
 from hybrid_rl.tools.doctor import __main__ as doctor
 from hybrid_rl.tools.doctor import evidence as evidence_of
 from hybrid_rl.tools.doctor import learned, linear, observed, regular, task
@@ -108,9 +107,8 @@ def test_commands_that_are_lost_and_signs_that_an_episode_draws_differ():
 def test_entries_that_are_swapped_every_other_decision_are_noticed():
     x, action = oscillator()
     x[:, 1::2] = x[:, 1::2, ::-1].copy()
-    assert "if every other decision has a rule of its own" in regular.alternates(
-        evidence(x, action)
-    )
+    line = regular.alternates(evidence(x, action))
+    assert "if every other decision has a rule of its own" in line
 
 
 def test_a_velocity_that_is_one_decision_old_is_a_late_sensor_and_no_delay():
@@ -258,7 +256,7 @@ def test_a_model_is_judged_beside_no_change_and_collisions_count_once():
 folder = finished("task=pendulum", "algo=nn_mppi", "total_steps=120", "random_steps=3")
 
 
-main = partial(call, partial(command.run, doctor.main))
+main = partial(call_command, doctor.main)
 
 
 def test_the_command_reads_a_run(folder, capsys):

@@ -7,10 +7,9 @@ from functools import partial
 from html.parser import HTMLParser
 
 import pytest
-from tiny import call, refusal, write_run
+from tiny import call_command, refusal, write_run
 
 import hybrid_rl as hr
-from hybrid_rl.cli import command
 from hybrid_rl.tools.report import __main__ as report
 
 CONFIG = "task: hopper\nalgo: {algo}\nseed: 0\nlearners:\n  policy:\n    rate: {rate}\nenv: {{}}\n"
@@ -65,7 +64,7 @@ def runs(tmp_path):
     return first, second
 
 
-main = partial(call, lambda: command.run(report.main))
+main = partial(call_command, report.main)
 
 
 def test_a_page_about_two_runs_holds_everything(runs, tmp_path, capsys):

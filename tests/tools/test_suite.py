@@ -2,19 +2,16 @@
 
 import json
 import subprocess
-from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import yaml
-from tiny import call, refusal, write_run
+from tiny import call_command, refusal, write_run
 
-from hybrid_rl.cli import command
 from hybrid_rl.settings.build import compose_raw
 from hybrid_rl.tools.suite import __main__ as suite
 
-MAIN = partial(command.run, suite.main)
 TASKS = {"one": {"train": "task=pendulum", "random": -10}, "two": {"train": "task=cartpole"}}
 
 
@@ -22,9 +19,8 @@ def test_it_begins_continues_and_leaves_out_and_writes_what_there_is(tmp_path, m
     file, out, peers = tmp_path / "my.yaml", tmp_path / "out", tmp_path / "peers.json"
     file.write_text(yaml.safe_dump({"at": [10, 20], "each": "num_envs=2", "tasks": TASKS}))
     theirs = {"one": {"20": [90, 80, 3]}, "two": {"20": [50, None, 5]}}
-    peers.write_text(
-        json.dumps({"A": {"tasks": theirs}, "B": {"tasks": {"one": {"20": [40, 1, 2]}}}})
-    )
+    of_both = {"A": {"tasks": theirs}, "B": {"tasks": {"one": {"20": [40, 1, 2]}}}}
+    peers.write_text(json.dumps(of_both))
     lines = []
     done = SimpleNamespace(returncode=0)
     monkeypatch.setattr(subprocess, "run", lambda line, **_: lines.append(line[3:]) or done)
@@ -35,7 +31,7 @@ def test_it_begins_continues_and_leaves_out_and_writes_what_there_is(tmp_path, m
     for name, first, last in (("one", (0, 20), (30, 50)), ("two", (5, 5), (10, 20))):
         returns = {"eval/return": {10: first, 20: last}}
         write_run(out / name, "task: pendulum\nalgo: sac\n", returns, finished=name == "one")
-    assert call(MAIN, *given, f"peers={peers}") == 0
+    assert call_command(suite.main, *given, f"peers={peers}") == 0
     assert lines[2:] == [[f"resume={out / 'two'}"]]
     rows = [line.split(" | ") for line in out.with_suffix(".md").read_text().splitlines()]
     assert rows[2][3:] == ["40 [30, 50]; 40; 30", "A, 90 |"]

@@ -63,14 +63,8 @@ class Recorder:
 def agent(every: int = 1) -> Agent:
     """Three environments, whose first six decisions are random."""
     parts = {"recorder": Recorder(every)}
-    return Agent(
-        Episode(Clock(), LENGTH),
-        ConstantController(0.5),
-        parts,
-        Replay(30),
-        NUM_ENVS,
-        random_steps=6,
-    )
+    episode, still = Episode(Clock(), LENGTH), ConstantController(0.5)
+    return Agent(episode, still, parts, Replay(30), NUM_ENVS, random_steps=6)
 
 
 def states(agent: Agent) -> tuple[Any, dict[str, Array]]:
@@ -240,9 +234,8 @@ def test_pretraining_is_gradient_steps_on_demonstrations(imitating):
     """The policy is that of a plain loop over the learner's updates."""
     learners = {"cloning": imitating.learners["cloning"]}
     alone = replace(imitating, learners=learners, pretrain=3)
-    ahead, still = (
-        jax.jit(a.init)(KEY).learners["cloning"] for a in (alone, replace(alone, pretrain=0))
-    )
+    both = alone, replace(alone, pretrain=0)
+    ahead, still = (jax.jit(agent.init)(KEY).learners["cloning"] for agent in both)
     count = ahead.optimiser[0].count
     assert (int(count), int(still.optimiser[0].count)) == (3, 0)
     state, cloning = still, learners["cloning"]

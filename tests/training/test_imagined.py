@@ -44,18 +44,10 @@ class Corner:
 
 EPISODE = Episode(WORLD, steps=30, reward=Corner())
 MODEL: Any = Drawn(WORLD)
-LEARNER = ModelBased(
-    POLICY,
-    EnsembleQ((16,), normalise=True, scale=True),
-    MODEL,
-    KnownReward(WORLD, Corner()),
-    branch_memory=320,
-    batch_size=32,
-    policy_learning_rate=3e-3,
-    critic_learning_rate=3e-3,
-    discount=0.95,
-    alpha=0.01,
-)
+CRITIC = EnsembleQ((16,), normalise=True, scale=True)
+FIELDS: dict[str, Any] = {"branch_memory": 320, "batch_size": 32, "discount": 0.95, "alpha": 0.01}
+FIELDS |= dict.fromkeys(("policy_learning_rate", "critic_learning_rate"), 3e-3)
+LEARNER = ModelBased(POLICY, CRITIC, MODEL, KnownReward(WORLD, Corner()), **FIELDS)
 PARAMS = Params(model=(), policy=POLICY.init(jax.random.key(1), WORLD.spec))
 
 

@@ -86,9 +86,8 @@ def test_jitter_and_loss_have_their_statistics():
     env, T = Pendulum(), 4000
     ramp = np.arange(T, dtype=np.float32)[:, None]
     dt = env.spec.dt
-    acted = moved(
-        Episode(env, 10 * T, delay=1.3 * dt, jitter=0.5 * dt, lag=0.0), ramp
-    ).clock.sent.acted
+    late = Episode(env, 10 * T, delay=1.3 * dt, jitter=0.5 * dt, lag=0.0)
+    acted = moved(late, ramp).clock.sent.acted
     lag = ramp[5:, 0] - acted[5:, 0]
     assert (np.diff(acted[:, 0]) >= 0).all()  # none overtakes another
     assert lag.min() >= 1.3 - 1e-3
@@ -126,12 +125,10 @@ def test_transitions_hold_what_acted(algo, given):
     A world that is late by itself holds nothing back: there it is the nearest whole lag.
     """
     env, T = Pendulum(), 12
-    agent = config.build(
-        config.load([*TINY, "task=pendulum", f"algo={algo}", "random_steps=100"])
-    ).agent
-    episode, acting = acting_ahead(
-        Episode(env, 9, **({"delay": LATE} | given)), {"full": agent.controller}
-    )
+    words = [*TINY, "task=pendulum", f"algo={algo}", "random_steps=100"]
+    agent = config.build(config.load(words)).agent
+    late = Episode(env, 9, **({"delay": LATE} | given))
+    episode, acting = acting_ahead(late, {"full": agent.controller})
     agent = replace(agent, episode=episode, controller=acting["full"])
 
     def one(state, t):

@@ -40,9 +40,7 @@ class Draws:
     def init(self, spec: Spec) -> Array:
         return jnp.float32(-1)
 
-    def act(
-        self, params: Params, state: Array, obs: Array, key: Array
-    ) -> tuple[Array, Array, dict]:
+    def act(self, params: Params, state: Array, obs: Array, key: Array) -> tuple:
         drawn = 0.5 + 0.5 * jax.random.bernoulli(key)
         state = jnp.where(state < 0, drawn, state)
         return state[None], state, {}
@@ -73,9 +71,7 @@ class Counts:
     def init(self, spec: Spec) -> Array:
         return jnp.zeros(())
 
-    def act(
-        self, params: Params, state: Array, obs: Array, key: Array
-    ) -> tuple[Array, Array, dict]:
+    def act(self, params: Params, state: Array, obs: Array, key: Array) -> tuple:
         return (state + obs) * params.policy, state + 1, {}
 
 
