@@ -18,14 +18,14 @@ deterministic memory in which policies and planners act: Hafner et al. 2019 (Pla
 """
 
 from functools import partial
-from typing import Any, cast
+from typing import Annotated, Any, cast
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import statistics
-from hybrid_rl.fields import Count, FieldError, part
+from hybrid_rl.fields import Count, Must, part
 from hybrid_rl.networks import MLP, Widths, apply
 from hybrid_rl.protocols import Trainable
 from hybrid_rl.types import Spec
@@ -36,13 +36,9 @@ class Recurrent:
     """`model`, a single one or an ensemble, at states with a memory of `memory` numbers."""
 
     model: Trainable
-    history: Count  # observations from which the memory is read
+    history: Annotated[int, Must(lambda k: k > 1, "be 2 or more; give episode.history=32")]
     memory: Count = 32
     hidden: Widths = (64,)  # of the network of K and y
-
-    def __post_init__(self) -> None:
-        if self.history < 2:
-            raise FieldError(self, "history", "must be 2 or more; give episode.history=32")
 
     @property
     def members(self) -> int:
