@@ -98,7 +98,7 @@ PAGES = {  # of the side bar, by what a reader asks
     "How well does it work?": ["docs/results/README", "docs/atlas"],
     "How does it work?": ["docs/methods", "All methods <methods/index>", *NOTEBOOKS],
     "What is it called?": [
-        *("Reference <reference/index>", "docs/renamed", "CHANGELOG"),
+        *("Reference <reference/index>", "CHANGELOG"),
         "Software paper <paper/paper>",
     ],
 }

@@ -78,7 +78,7 @@ class Recurrent:
         rows = obs[o:].reshape(self.history - 1, -1)  # v and u before it, newest first
         newer = partial(jnp.matmul, jnp.tri(len(rows), k=-1), precision="highest")  # their sums
         rows = jnp.concatenate((obs[None, :o] - dt * newer(rows[:, :o]), rows), 1)
-        gain, y = self._told(params, rows)
+        gain, y = self._measured(params, rows)
         weight = jax.nn.log_sigmoid(gain) + newer(jax.nn.log_sigmoid(-gain))
         h = (jax.nn.softmax(weight, 0) * y).sum(0)
         return jnp.concatenate((obs[: 2 * o], h))
@@ -117,12 +117,12 @@ class Recurrent:
         """The state [n] after x [n] and u [m], where the inner model says `after`: with its h."""
         moving = x.size - self.memory
         row = jnp.concatenate((after[:moving], u))
-        gain, y = self._told(params, row)
+        gain, y = self._measured(params, row)
         return jnp.concatenate(
             (after[:moving], x[moving:] + jax.nn.sigmoid(gain) * (y - x[moving:]))
         )
 
-    def _told(self, params: dict[str, Any], rows: Array) -> tuple[Array, Array]:
+    def _measured(self, params: dict[str, Any], rows: Array) -> tuple[Array, Array]:
         """The logits of K, and y [..., memory], of rows (o, v, u) [..., d] of decisions."""
         moving = params["state"].mean.size - self.memory
         state = jax.tree.map(lambda leaf: leaf[:moving] if leaf.ndim else leaf, params["state"])

@@ -44,7 +44,7 @@ def params(lived):
     return MODEL.observe(begun(MODEL, history.seen(SPEC, K)), s[:-1], s[1:])
 
 
-def told(params, obs, before, u):
+def measured(params, obs, before, u):
     """K and y [h] of observation `obs` [o] after action u [m] at the one `before`."""
     moving = jnp.concatenate((obs, (obs - before) / SPEC.dt))
     moving = (moving - params["state"].mean[: 2 * D]) / params["state"].scale[: 2 * D]
@@ -57,7 +57,7 @@ def test_the_memory_is_a_filter_over_the_last_decisions(lived, params):
     obs, u, s = lived
     sums, weights, t = jnp.zeros(H), jnp.zeros(H), 6
     for i in range(t - K + 2, t + 1):
-        gain, y = told(params, obs[i], obs[i - 1], u[i - 1])
+        gain, y = measured(params, obs[i], obs[i - 1], u[i - 1])
         sums, weights = sums + gain * (y - sums), weights + gain * (1 - weights)
     x = MODEL.lift(params, s[t])
     close(x[: 2 * D], s[t][: 2 * D])
@@ -72,7 +72,7 @@ def test_predicted_decisions_go_on_from_there(lived, params):
     close(mean, MODEL.step(params, x, u[5]))
     assert disagreement.size == MODEL.disagreement(params, x, u[5]).size == D
     for after in (mean, *each, drawn):
-        gain, y = told(params, after[:D], obs[5], u[5])
+        gain, y = measured(params, after[:D], obs[5], u[5])
         close(after[D : 2 * D], (after[:D] - obs[5]) / SPEC.dt)
         close(after[2 * D :], x[2 * D :] + gain * (y - x[2 * D :]))
     assert not np.allclose(drawn[:D], mean[:D])
