@@ -53,9 +53,8 @@ def lifted_batch(model: Model | None, params: PyTree, batch: Batch) -> Batch:
     """`batch` with planning states [B, n] instead of its observations [B, o]."""
     if model is None:
         return batch
-    both = jnp.stack((batch.obs, batch.next_obs))
-    obs, next_obs = jax.vmap(jax.vmap(lambda obs: model.lift(params, obs)))(both)
-    return batch._replace(obs=obs, next_obs=next_obs)
+    each = jax.vmap(lambda obs: model.lift(params, obs))
+    return batch._replace(obs=each(batch.obs), next_obs=each(batch.next_obs))
 
 
 def lifted_spec(model: Model | None, spec: Spec) -> Spec:
