@@ -114,10 +114,8 @@ class Sprk(ContactPlane):
             each.any().astype(jnp.float32) for each in (force > 0, jolts > self.threshold)
         )
         felt = touch if self.sensor == "touch" else jolt
-        noise, drawing = jax.random.split(jax.random.wrap_key_data(info["noise"]))
-        measured = self.measured(felt, u - info["action"], drawing)
-        measured = jnp.where(jnp.isfinite(data.qpos).all(), measured, jnp.nan)
-        info = {**info, "action": u, "noise": jax.random.key_data(noise)}
+        measured, noise = self.measured(felt, u - info["action"], data.qpos, info["noise"])
+        info = {**info, "action": u, "noise": noise}
         return self._seen(data, touch, measured, info)
 
     def _jolt(self, v: Array, after: Array, u: Array) -> Array:
