@@ -118,10 +118,8 @@ class PlanarLegs(Runner):
         """Whether [] an episode goes on at qpos without x [nq - 1] and qvel [nv]."""
 
     def _obs(self, data: PhysicsState) -> Array:
-        seen, limit = data.qvel, self.velocity_limit
-        if limit is not None:
-            seen = jnp.clip(seen, -limit, limit)
-        return jnp.concatenate((data.qpos[1:], seen))
+        limit = self.velocity_limit or jnp.inf
+        return jnp.concatenate((data.qpos[1:], jnp.clip(data.qvel, -limit, limit)))
 
     def _paid(self, data: PhysicsState, control: Array, speed: Array) -> tuple[Array, Array]:
         alive = self.alive(data.qpos[1:], data.qvel)
