@@ -51,9 +51,8 @@ class Cartpole(Body):
         """The state after one decision. action: [1] in [-1, 1]."""
         action = jnp.clip(action, -1.0, 1.0)
         data = self._body.step(state.data, action, 1)
-        return _state(
-            data, jnp.cos(data.qpos[1]) if self.reward == "cos" else _dm_control(data, action)
-        )
+        reward = jnp.cos(data.qpos[1]) if self.reward == "cos" else _dm_control(data, action)
+        return _state(data, reward)
 
     def quantities(self, obs: Array) -> dict[str, Array]:
         """Position [m] and speed [m/s] of the cart, and the pole's height, -1 to 1, at obs [5]."""

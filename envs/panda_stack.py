@@ -35,6 +35,7 @@ from typing import Literal
 import jax
 import jax.numpy as jnp
 from jax import Array
+from jax.numpy.linalg import norm
 
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.kinematics import Chain, damped_inverse, rotate_towards, stay_within
@@ -128,7 +129,7 @@ class PandaStack:
         tool, block = state.obs[:3], state.obs[3:6]
         if self.observation != "thesis":
             tool, block = TOOL.pose(state.data.qpos)[0], state.data.qpos[BLOCK]
-        away, left = _norm(block - tool), _norm(self._goal(state.data) - block)
+        away, left = norm(block - tool), norm(self._goal(state.data) - block)
         stays = (away < SIDE / 2) & (left > self.reach)
         closes = (away < self.reach) & (left > SIDE / 2)
         return jnp.where(state.info["closed"] > 0, stays, closes)
@@ -141,8 +142,7 @@ class PandaStack:
         """Joint velocities [7] [rad/s] that move the hand by `velocity` [3] [m/s]."""
         upright = jnp.asarray(TOOL.constant_pose(READY)[1])
         tool, rotation, jacobian = TOOL.pose(data.qpos)
-        low, high = (jnp.asarray(b, jnp.float32) for b in (self.low, self.high))
-        linear = stay_within(velocity, tool, low, high)
+        linear = stay_within(velocity, tool, self.low, self.high)
         twist = jnp.concatenate((linear, rotate_towards(rotation, upright, self.hold)))
         back = self.posture * (jnp.asarray(READY, jnp.float32) - data.qpos[:7])
         return damped_inverse(jacobian, twist, self.damping, back)
@@ -168,26 +168,22 @@ class PandaStack:
         touching = jnp.abs(fingers - SIDE / 2) < TOUCH
         inside = jnp.abs(block - tool) < SIDE / 2
         grasped = (closed > 0) & touching.all() & inside.all()
-        remaining = 1.25 * _norm(block - goal) if self.reward == "joined" else 0.0
-        stage = jnp.where(grasped, -1.25 * _norm(tool - goal), -_norm(tool - block) - remaining)
+        remaining = 1.25 * norm(block - goal) if self.reward == "joined" else 0.0
+        stage = jnp.where(grasped, -1.25 * norm(tool - goal), -norm(tool - block) - remaining)
         error = jnp.abs(block - goal)
-        placed = (_norm(error[:2]) < self.success_distance) & (error[2] < LEVEL)
-        success = placed & (closed == 0) & (_norm(data.qvel[BLOCK_SPEED]) < QUIET)
+        placed = (norm(error[:2]) < self.success_distance) & (error[2] < LEVEL)
+        success = placed & (closed == 0) & (norm(data.qvel[BLOCK_SPEED]) < QUIET)
         if self.observation == "relative":
             parts = block - tool, goal - block, closed[None]
         elif self.observation == "stage":
             parts = jnp.where(closed > 0, goal - block, block - tool), closed[None], block[2:]
         else:
             parts = tool, block, closed[None], wrench, *([goal] if self.base_spread else [])
-        metrics = {"success": success, "grasped": grasped, "distance": _norm(block - goal)}
+        metrics = {"success": success, "grasped": grasped, "distance": norm(block - goal)}
         metrics = {name: value.astype(jnp.float32) for name, value in metrics.items()}
-        reward = stage - self.penalty * (_norm(wrench) + _norm(action))
+        reward = stage - self.penalty * (norm(wrench) + norm(action))
         ended = success & self.terminate
         return EnvState(data, jnp.concatenate(parts), reward, ended, metrics=metrics, info=info)
-
-
-def _norm(x: Array) -> Array:
-    return jnp.sqrt((x**2).sum())
 
 
 def _cube(middle: tuple[float, ...], spread: float, turn: Array, key: Array) -> Array:

@@ -109,10 +109,11 @@ class SawyerProbe:
 
         def command(carry: tuple[PhysicsState, Array], _: None) -> tuple:
             data, c = carry
-            tip, rotation, jacobian = TIP.pose(data.qpos)
-            c = self._led(move(c, push, self.drag, DT / COMMANDS), tip[:2])
-            velocity = c[2:] + self.track * (c[:2] - tip[:2])
-            data = body.step(data, self._rates(data.qpos, tip, rotation, jacobian, velocity), STEPS)
+            pose = TIP.pose(data.qpos)
+            tip = pose[0][:2]
+            c = self._led(move(c, push, self.drag, DT / COMMANDS), tip)
+            velocity = c[2:] + self.track * (c[:2] - tip)
+            data = body.step(data, self._rates(data.qpos, pose, velocity), STEPS)
             return (data, c), body.sensor(data, "touch")[0]
 
         first = state.data, state.info["command"]
@@ -132,11 +133,9 @@ class SawyerProbe:
         v = v - jnp.where(taut, jnp.maximum(v @ ahead, 0) / away**2, 0.0) * ahead
         return jnp.concatenate([jnp.where(taut, tip + self.lead / away * ahead, inside), v])
 
-    def _rates(
-        self, qpos: Array, tip: Array, rotation: Array, jacobian: Array, velocity: Array
-    ) -> Array:
-        """Joint velocities [7] [rad/s] that move the tip by `velocity` [2] [m/s]."""
-        home, leaning = TIP.constant_pose(HOME)
+    def _rates(self, qpos: Array, pose: tuple[Array, Array, Array], velocity: Array) -> Array:
+        """Joint velocities [7] [rad/s] that move the tip from `pose` by `velocity` [2] [m/s]."""
+        (tip, rotation, jacobian), (home, leaning) = pose, TIP.constant_pose(HOME)
         turn = rotate_towards(rotation, _upright(jnp.asarray(leaning)), self.hold)
         rise = self.hold * (jnp.asarray(home[2:]) - tip[2:])
         back = self.posture * (jnp.asarray(HOME, jnp.float32) - qpos)
@@ -147,10 +146,8 @@ class SawyerProbe:
         """Angles [7] that bring the tip to p [2], by Newton's method from q [7]."""
 
         def newton(q: Array, _: None) -> tuple[Array, None]:
-            tip, rotation, jacobian = TIP.pose(q)
-            gain = self.hold
-            rates = self._rates(q, tip, rotation, jacobian, gain * (p - tip[:2]))
-            return q + rates / gain, None
+            pose = TIP.pose(q)
+            return q + self._rates(q, pose, self.hold * (p - pose[0][:2])) / self.hold, None
 
         return jax.lax.scan(newton, q, None, length=ITERATIONS)[0]
 

@@ -120,8 +120,7 @@ class SawyerPush:
         """Joint velocities [7] [rad/s] that move the tip by `velocity` [2] [m/s]."""
         home, upright = TIP.constant_pose(HOME)
         tip, rotation, jacobian = TIP.pose(data.qpos)
-        low, high = (jnp.asarray(b, jnp.float32) for b in (self.low, self.high))
-        planar = stay_within(velocity, tip[:2], low, high)
+        planar = stay_within(velocity, tip[:2], self.low, self.high)
         rise = self.hold * (home[2:] - tip[2:])
         twist = jnp.concatenate(
             (planar, rise, rotate_towards(rotation, jnp.asarray(upright), self.hold))

@@ -110,14 +110,11 @@ class Sprk(ContactPlane):
         data, (force, v) = jax.lax.scan(reading, state.data, None, length=READINGS)
         v = jnp.concatenate([state.data.qvel[None, :2], v])[:: READINGS // MEANS]
         jolts = jax.vmap(self._jolt, (0, 0, None))(v[:-1], v[1:], local)
-        touch, jolt = (
-            each.any().astype(jnp.float32) for each in (force > 0, jolts > self.threshold)
-        )
+        touch = (force > 0).any().astype(jnp.float32)
+        jolt = (jolts > self.threshold).any().astype(jnp.float32)
         felt = touch if self.sensor == "touch" else jolt
-        noise, drawing = jax.random.split(jax.random.wrap_key_data(info["noise"]))
-        measured = self.measured(felt, u - info["action"], drawing)
-        measured = jnp.where(jnp.isfinite(data.qpos).all(), measured, jnp.nan)
-        info = {**info, "action": u, "noise": jax.random.key_data(noise)}
+        measured, noise = self.measured(felt, u - info["action"], data.qpos, info["noise"])
+        info = {**info, "action": u, "noise": noise}
         return self._seen(data, touch, measured, info)
 
     def _jolt(self, v: Array, after: Array, u: Array) -> Array:

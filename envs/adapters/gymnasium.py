@@ -60,10 +60,8 @@ def make_vec(
 
 def _spaces(env: Env) -> tuple[Box, Box]:
     """Observation and action space of one environment."""
-    return (
-        Box(-np.inf, np.inf, (env.spec.obs,), np.float32),
-        Box(-1.0, 1.0, (env.spec.act,), np.float32),
-    )
+    spec = env.spec
+    return Box(-np.inf, np.inf, (spec.obs,)), Box(-1.0, 1.0, (spec.act,))
 
 
 @cache

@@ -70,14 +70,7 @@ def _rate(x: Array, u: Array) -> Array:
     first, second, both = M1 * L1 / 2 + M2 * L1, M2 * L2 / 2, M2 * L1 * L2 / 2
     c1, c2 = first * jnp.cos(a), second * jnp.cos(b)
     i1, i2 = (M1 / 3 + M2) * L1**2, M2 * L2**2 / 3
-    total = jnp.full_like(a, M0 + M1 + M2)
-    mass = jnp.stack(
-        [
-            jnp.stack([total, c1, c2]),
-            jnp.stack([c1, i1 + 0 * a, both * c12]),
-            jnp.stack([c2, both * c12, i2 + 0 * a]),
-        ]
-    )
+    mass = jnp.array([[M0 + M1 + M2, c1, c2], [c1, i1, both * c12], [c2, both * c12, i2]])
     force = u + first * s1 * w**2 + second * s2 * v**2
     torques = [first * G * s1 - both * s12 * v**2, second * G * s2 + both * s12 * w**2]
     return jnp.concatenate([x[3:], jnp.linalg.solve(mass, jnp.stack([force, *torques]))])

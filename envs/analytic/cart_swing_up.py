@@ -50,12 +50,9 @@ class CartSwingUp(Euclidean):
 
     def _state(self, x: Array, reward: Array, info: dict[str, Array]) -> EnvState:
         upright = (jnp.cos(x[0]) > UPRIGHT).astype(jnp.float32)
-        ended = jnp.zeros((), bool)
-        if self.rail is not None:
-            ended |= jnp.abs(x[1]) > self.rail
-        if self.turns is not None:
-            ended |= jnp.abs(x[0] - jnp.pi) > 2 * jnp.pi * self.turns
-        return fully_observed(x, reward, ended).replace(metrics={"success": upright})
+        off = jnp.abs(x[1]) > (self.rail or jnp.inf)
+        wound = jnp.abs(x[0] - jnp.pi) > 2 * jnp.pi * (self.turns or jnp.inf)
+        return fully_observed(x, reward, off | wound).replace(metrics={"success": upright})
 
     def reward_of(self, x: Array, u: Array, after: Array) -> Array:
         """The reward [] of action u [1] at x [4], which led to `after` [4]."""

@@ -117,17 +117,21 @@ class ContactPlane:
 
         first = body.x, jnp.zeros((), bool)
         (x, touched), _ = jax.lax.scan(substep, first, None, length=SUBSTEPS)
-        noise, drawing = jax.random.split(jax.random.wrap_key_data(body.noise))
         touch = touched.astype(jnp.float32)
-        measured = self.measured(touch, u - body.u, drawing)
-        measured = jnp.where(jnp.isfinite(x).all(), measured, jnp.nan)  # no contact hides a NaN
-        return self._state(Body(x, u, pose, jax.random.key_data(noise)), touch, measured)
+        measured, noise = self.measured(touch, u - body.u, x, body.noise)
+        return self._state(Body(x, u, pose, noise), touch, measured)
 
-    def measured(self, touch: Array, change: Array, key: Array) -> Array:
-        """y [] of the sensor for contact `touch` [], after this change [2] of the action."""
+    def measured(self, touch: Array, change: Array, x: Array, noise: Array) -> tuple[Array, Array]:
+        """y [] of the sensor for contact `touch` [] at x, and data of the key of its next error.
+
+        change: [2] of the action. noise: data of a key, which is consumed.
+        """
+        later, drawing = jax.random.split(jax.random.wrap_key_data(noise))
         false = self.false_contact * jnp.linalg.norm(change) / 2
-        wrong = jax.random.uniform(key) < jnp.where(touch > 0, self.missed, false)
-        return jnp.where(wrong, 1 - touch, touch)
+        wrong = jax.random.uniform(drawing) < jnp.where(touch > 0, self.missed, false)
+        y = jnp.where(wrong, 1 - touch, touch)
+        y = jnp.where(jnp.isfinite(x).all(), y, jnp.nan)  # no contact hides a NaN
+        return y, jax.random.key_data(later)
 
     def _state(self, body: Body, touch: Array, measured: Array) -> EnvState:
         return EnvState(body, body.x, measured, metrics=metrics_of(touch, body.pose))

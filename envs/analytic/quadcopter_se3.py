@@ -60,10 +60,9 @@ class QuadcopterSE3:
             angles = jax.random.uniform(jax.random.fold_in(key, 2), (3,), jnp.float32, -1, 1)
             about_x, about_y, about_z = map(_turned, jnp.eye(3), self.turn * angles)
             x = x.at[3:12].set((about_z @ about_y @ about_x).reshape(9))
-        state = fully_observed(x, jnp.float32(0.0))
-        if self._faulty:
-            state = state.replace(info={CLOCK: jnp.zeros((), jnp.int32)})
-        state = state.replace(metrics=_metrics(x, hover.astype(jnp.float32)))
+        info = {CLOCK: jnp.zeros((), jnp.int32)} if self._faulty else {}
+        metrics = _metrics(x, hover.astype(jnp.float32))
+        state = fully_observed(x, jnp.float32(0.0)).replace(metrics=metrics, info=info)
         return sensor_noise.begin(state, self.sensor_noise, jax.random.fold_in(key, 3))
 
     def step(self, state: EnvState, action: Array) -> EnvState:
@@ -74,7 +73,7 @@ class QuadcopterSE3:
             begun = state.info[CLOCK] >= round(self.fault_time / DT)
             thrust = u.at[0].multiply(jnp.where(begun, 1 - self.rotor_loss, 1.0))
             wind, info = jnp.where(begun, self.wind, 0.0), {CLOCK: state.info[CLOCK] + 1}
-        x = self._next(state.data, thrust, wind)
+        x = self.dynamics(state.data, thrust, wind)
         reward = self.reward_of(state.data, u, x)
         after = fully_observed(x, reward, self.terminate & (x[11] < 0))
         after = after.replace(metrics=_metrics(x, u), info=info)
@@ -89,12 +88,11 @@ class QuadcopterSE3:
         """The reward [] of action u [4] at x [18], which led to `after` [18]."""
         return -(jnp.sum(after[:3] ** 2) + 0.1 * jnp.sum(after[12:] ** 2))
 
-    def dynamics(self, x: Array, u: Array) -> Array:
-        """The next observation [18] after action u [4] at x [18], without noise and faults."""
-        return self._next(x, u)
+    def dynamics(self, x: Array, u: Array, wind: Array | None = None) -> Array:
+        """The next observation [18] after action u [4] at x [18], without noise and faults.
 
-    def _next(self, x: Array, u: Array, wind: Array | None = None) -> Array:
-        """The next state [18] after action u [4] at x [18] in `wind` [] [m/s^2]."""
+        But for `wind` [] [m/s^2], if it is given.
+        """
         p, R, v, w = x[:3], x[3:12].reshape(3, 3), x[12:15], x[15:]
         p, R, v, w = rk4(lambda x: self._rate(x, THRUST * u, wind), (p, R, v, w), DT)
         R = R @ (1.5 * jnp.eye(3) - 0.5 * R.T @ R)  # re-orthogonalised to first order

@@ -26,6 +26,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.core.poses import rotated
 from hybrid_rl.envs import sensor_noise
 from hybrid_rl.envs.analytic.state import rk4
 from hybrid_rl.envs.mujoco import mjcf
@@ -104,8 +105,7 @@ class SprkSand:
         """Time derivatives under the command a [2]."""
         p, v, c = ball
         k = K * (1 + self.variation * jnp.prod(jnp.sin(2 * jnp.pi * p)))
-        cos, sin = jnp.cos(self.slip), jnp.sin(self.slip)
-        push = k * jnp.stack([cos * c[0] - sin * c[1], sin * c[0] + cos * c[1]])
+        push = k * rotated(c, jnp.float32(self.slip))
         speed = jnp.sqrt(jnp.sum(v**2) + 1e-12)
         drag = D1 + D2 * speed + MU * jnp.tanh(speed / CREEP) / speed
         return Ball(v, push - drag * v, (a - c) / TAU)

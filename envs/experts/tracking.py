@@ -38,10 +38,8 @@ class Feedback(ABC):
     integral: NotNegative = 0.0  # [1/s] k
 
     @abstractmethod
-    def torques(
-        self, q: Array, rate: Array, error: Array, rate_ref: Array, rate_next: Array
-    ) -> Array:
-        """Torques [7] [N m] at q and q' [7], for e + k z and the rates of the reference [7]."""
+    def torques(self, q: Array, rate: Array, e: Array, e_rate: Array, ahead: Array) -> Array:
+        """Torques [7] [N m] at q and q' [7], for e + k z, e' and q''_ref [7]."""
 
     def init(self, spec: Spec) -> Array:
         """z [7] = 0."""
@@ -52,9 +50,9 @@ class Feedback(ABC):
     ) -> tuple[Array, Array, dict[str, Array]]:
         """Action [7], within its limits, the next z [7], no metrics; deterministic."""
         q, rate, q_ref, rate_ref, _, rate_next = jnp.split(obs, 6)
-        error = q_ref - q
-        z = state + DT * error
-        torques = self.torques(q, rate, error + self.integral * z, rate_ref, rate_next)
+        e = q_ref - q
+        z, ahead = state + DT * e, (rate_next - rate_ref) / DT
+        torques = self.torques(q, rate, e + self.integral * z, rate_ref - rate, ahead)
         return jnp.clip(torques / jnp.array(LIMITS), -1.0, 1.0), z, {}
 
     def greedy(self) -> Self:
@@ -68,12 +66,9 @@ class ComputedTorque(Feedback):
 
     frequency: Positive = 20.0  # [rad/s] w of the errors
 
-    def torques(
-        self, q: Array, rate: Array, error: Array, rate_ref: Array, rate_next: Array
-    ) -> Array:
+    def torques(self, q: Array, rate: Array, e: Array, e_rate: Array, ahead: Array) -> Array:
         """Of the model, for the reference's acceleration and that by which the errors vanish."""
-        feedback = self.frequency**2 * error + 2 * self.frequency * (rate_ref - rate)
-        acceleration = (rate_next - rate_ref) / DT + feedback
+        acceleration = ahead + (self.frequency**2 * e + 2 * self.frequency * e_rate)
         return kinematics.torques(sawyer_torque.asset(self.world.damping), q, rate, acceleration)
 
 
@@ -84,8 +79,6 @@ class JointPD(Feedback):
     stiffness: tuple[NotNegative, ...] = (400.0, 400.0, 200.0, 200.0, 40.0, 20.0, 10.0)  # [N m/rad]
     damping: tuple[NotNegative, ...] = (40.0, 40.0, 20.0, 20.0, 4.0, 2.0, 1.0)  # [N m s/rad]
 
-    def torques(
-        self, q: Array, rate: Array, error: Array, rate_ref: Array, rate_next: Array
-    ) -> Array:
+    def torques(self, q: Array, rate: Array, e: Array, e_rate: Array, ahead: Array) -> Array:
         """Of springs and dampers."""
-        return jnp.array(self.stiffness) * error + jnp.array(self.damping) * (rate_ref - rate)
+        return jnp.array(self.stiffness) * e + jnp.array(self.damping) * e_rate

@@ -157,10 +157,10 @@ def rotate_towards(rotation: Array, target: Array, gain: float) -> Array:
     return gain * rotation_vector(quat_multiply(target, inverse(rotation)))
 
 
-def stay_within(velocity: Array, position: Array, low: Array, high: Array) -> Array:
-    """`velocity`, set to 0 where it would leave the box [low, high]; all of one shape."""
-    up, down = jnp.where(position < high, velocity, 0.0), jnp.where(position > low, velocity, 0.0)
-    return jnp.where(velocity > 0, up, down)
+def stay_within(velocity: Array, position: Array, low: tuple, high: tuple) -> Array:
+    """`velocity`, set to 0 where it would leave the box [low, high]; all of one length."""
+    below, above = position < jnp.array(high), position > jnp.array(low)
+    return jnp.where(jnp.where(velocity > 0, below, above), velocity, 0.0)
 
 
 class Bodies(NamedTuple):

@@ -37,7 +37,7 @@ def step(
     """
     if impl == "jax":
         model, data = template(asset, impl)
-        return _step(asset, impl, n, reads, (model.tree_replace(own or {}), data), fields)
+        return _step(asset, impl, n, reads, model.tree_replace(own or {}), data, fields)
     one = _batched_step(asset, n, reads)(jax.tree.map(lambda x: x[None], fields))
     return jax.tree.map(lambda x: x[0], one)
 
@@ -95,15 +95,9 @@ def template(asset: str, impl: str, worlds: int = 1) -> tuple[Any, Any]:
 
 
 def _step(
-    asset: str,
-    impl: str,
-    n: int,
-    reads: tuple[str, ...],
-    model_and_data: tuple[Any, Any],
-    fields: Fields,
+    asset: str, impl: str, n: int, reads: tuple[str, ...], model: Any, data: Any, fields: Fields
 ) -> Fields:
     """`OUTPUTS` of one simulation."""
-    model, data = model_and_data
     with jax.numpy_rank_promotion("allow"):
         data = data.replace(**fields)
         data = jax.lax.fori_loop(0, n, lambda _, d: mjx.step(model, d), data)
@@ -142,8 +136,8 @@ def _batched_step(asset: str, n: int, reads: tuple[str, ...]) -> Any:
 
     @jax.custom_batching.custom_vmap
     def advance(fields: Fields) -> Fields:
-        model_and_data = template(asset, "warp", len(fields["qpos"]))
-        return jax.vmap(partial(_step, asset, "warp", n, reads, model_and_data))(fields)
+        model, data = template(asset, "warp", len(fields["qpos"]))
+        return jax.vmap(partial(_step, asset, "warp", n, reads, model, data))(fields)
 
     @advance.def_vmap
     def _(size: int, batched: list[dict[str, bool]], fields: Fields) -> tuple[Fields, Any]:

@@ -38,6 +38,7 @@ from hybrid_rl.fields import Must, part
 NATIVE_PER_CORE = 40  # environments per core of the host up to which auto is native
 Implementation = Literal["auto", "native", "mjx", "warp"]
 IMPLEMENTATIONS = get_args(Implementation)
+INPUTS = ("qpos", "qvel", "act", "qacc_warmstart", "ctrl")  # of a step, as MjData calls them
 
 
 def _runs(implementation: str) -> bool:
@@ -151,42 +152,35 @@ class Physics:
         return state.sensors[: ends[index]][-prod(shapes[index]) :].reshape(shapes[index])
 
     def _advance(self, state: PhysicsState, n: int) -> PhysicsState:
+        given = (state.qpos, state.qvel, state.act, state.warmstart, state.ctrl)
+        inputs = {name: x for name, x in zip(INPUTS, given, strict=True) if x is not None}
         implementation = resolve(self.implementation)
         if implementation == "native":
-            return self._native(state, n)
-        return self._accelerated(state, n, "jax" if implementation == "mjx" else "warp")
-
-    def _native(self, state: PhysicsState, n: int) -> PhysicsState:
-        model = self.model
-        parts = (state.qpos, state.qvel, state.act, state.warmstart, state.ctrl)
-        names = tuple(sorted(state.fields))
-        own = (state.fields[name].ravel() for name in names)
-        x = jnp.concatenate([*(part for part in parts if part is not None), *own])
-        out = native.step(self.asset, self.threads, n, x, self.reads, names)
-        ends = (model.nq, model.nq + model.nv, model.nq + model.nv + model.na)
-        qpos, qvel, act, rest = jnp.split(out, ends)
-        warmstart, sensors = jnp.split(rest, (model.nv,))
+            out = self._native(inputs, state.fields, n)
+        else:
+            impl = "jax" if implementation == "mjx" else "warp"
+            out = self._accelerated(inputs, state.fields, n, impl)
+        qpos, qvel, act, warmstart, sensors = out
         return state.replace(
             qpos=qpos, qvel=qvel, act=_or_none(act), warmstart=warmstart, sensors=_or_none(sensors)
         )
 
-    def _accelerated(self, state: PhysicsState, n: int, impl: str) -> PhysicsState:
+    def _native(self, inputs: dict[str, Array], own: dict[str, Array], n: int) -> list[Array]:
+        model, names = self.model, tuple(sorted(own))
+        x = jnp.concatenate([*inputs.values(), *(own[name].ravel() for name in names)])
+        out = native.step(self.asset, self.threads, n, x, self.reads, names)
+        return jnp.split(out, np.cumsum((model.nq, model.nv, model.na, model.nv)))
+
+    def _accelerated(
+        self, inputs: dict[str, Array], own: dict[str, Array], n: int, impl: str
+    ) -> list[Array]:
         from hybrid_rl.envs.mujoco import mjx_warp
 
-        fields = {
-            "qpos": state.qpos,
-            "qvel": state.qvel,
-            "act": state.act,
-            "qacc_warmstart": state.warmstart,
-            "ctrl": state.ctrl,
-        }
-        fields = {name: x for name, x in fields.items() if x is not None}
-        if state.fields and impl == "warp":
+        if own and impl == "warp":
             line = "of the model, which an episode has for itself, are not for MuJoCo Warp"
             raise ValueError(f"fields {line}: use physics=mjx")
-        out = mjx_warp.step(self.asset, impl, n, fields, self.reads, state.fields)
-        qpos, qvel, act, warmstart, sensors = (_or_none(out[name]) for name in mjx_warp.OUTPUTS)
-        return state.replace(qpos=qpos, qvel=qvel, act=act, warmstart=warmstart, sensors=sensors)
+        out = mjx_warp.step(self.asset, impl, n, inputs, self.reads, own)
+        return [out[name] for name in mjx_warp.OUTPUTS]
 
 
 def _or_none(x: Array) -> Any:
