@@ -24,11 +24,12 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.locomotion import Runner
-from hybrid_rl.envs.mujoco.physics import PhysicsState
+from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
 from hybrid_rl.fields import part
 from hybrid_rl.types import Spec
 
 ASSETS = {"rk4": "humanoid.xml", "euler": "humanoid_euler.xml"}  # by integrator
+LIMIT = 0.4  # of a control
 REWARD_READS = ("subtree_com", "cfrc_ext")
 OBSERVATION_READS = {"short": (), "full": ("cinert", "cvel", "qfrc_actuator")}
 
@@ -40,7 +41,7 @@ class Humanoid(Runner):
     observation: Literal["short", "full"] = "short"
     integrator: Literal["rk4", "euler"] = "rk4"  # as Gymnasium; euler costs a quarter
 
-    steps, dt, hidden, spread, strength = 5, 0.015, 2, 0.01, 0.4
+    steps, dt, hidden, spread = 5, 0.015, 2, 0.01
 
     @property
     def spec(self) -> Spec:
@@ -52,8 +53,11 @@ class Humanoid(Runner):
         return ASSETS[self.integrator]
 
     @property
-    def _reads(self) -> tuple[str, ...]:
-        return REWARD_READS + OBSERVATION_READS[self.observation]
+    def _body(self) -> Physics:
+        return self._physics(self._asset, REWARD_READS + OBSERVATION_READS[self.observation])
+
+    def _control(self, action: Array) -> Array:
+        return LIMIT * action
 
     def _x(self, data: PhysicsState) -> Array:
         return self._body.read(data, "subtree_com")[0, 0]

@@ -42,7 +42,6 @@ class Runner(Body):
     dt: ClassVar[float]  # [s] of a decision
     hidden: ClassVar[int]  # coordinates of the root that are not observed: x, or x and y
     spread: ClassVar[float] = 0.1  # [m, rad] largest distance from the upright pose at the start
-    strength: ClassVar[float] = 1.0  # of a control, at a = 1
     gaussian: ClassVar[bool] = False  # qvel at the start: 0.1 N(0, 1), or uniform as qpos
 
     @abstractmethod
@@ -69,7 +68,7 @@ class Runner(Body):
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state after one decision. action: [m] in [-1, 1]."""
-        control = self.strength * jnp.clip(action, -1.0, 1.0)
+        control = self._control(jnp.clip(action, -1.0, 1.0))
         data = self._body.step(state.data, control, self.steps)
         speed = (self._x(data) - self._x(state.data)) / self.dt
         reward, ended = self._paid(data, control, speed)
@@ -80,6 +79,10 @@ class Runner(Body):
         """At the start of an episode."""
         zero = jnp.float32(0.0)
         return EnvState(data, self._obs(data), zero, metrics={"speed": zero})
+
+    def _control(self, action: Array) -> Array:
+        """Controls [m] of an action [m] in [-1, 1]."""
+        return action
 
     def _x(self, data: PhysicsState) -> Array:
         """The position [] [m] whose speed is paid."""

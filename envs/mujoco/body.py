@@ -31,8 +31,7 @@ class Body(ABC):
     friction: Positive = 1.0  # factor on every coefficient of sliding friction
     motors: tuple[Positive, ...] | Positive = 1.0  # factor on their strength: of all, or [m]
     payload: NotNegative = 0.0  # [kg] at the centre of mass of the root
-    _asset: ClassVar[str] = ""  # the model, whose first m actuators are the motors
-    _reads: ClassVar[tuple[str, ...]] = ()  # what `_body` reads of MjData
+    _asset: ClassVar[str] = ""  # the model, whose first m actuators are the motors, for `_body`
 
     def __post_init__(self) -> None:
         size = self.spec.act
@@ -49,17 +48,20 @@ class Body(ABC):
         return state.data.qpos
 
     @property
+    def _body(self) -> Physics:
+        return self._physics(self._asset)
+
+    @property
     def _motors(self) -> tuple[float, ...]:
         """The factor of each motor [m]."""
         one = not isinstance(self.motors, tuple)
         return (self.motors,) * self.spec.act if one else self.motors
 
-    @property
-    def _body(self) -> Physics:
-        """The physics of the model, with the changes."""
+    def _physics(self, asset: str, reads: tuple[str, ...] = ()) -> Physics:
+        """The physics of `asset`, with the changes."""
         factors = {"mass": self.mass, "friction": self.friction}
         factors |= {f"motor.{i}": factor for i, factor in enumerate(self._motors)}
         values = {key: factor for key, factor in factors.items() if factor != 1}
         if self.payload:
             values["payload"] = self.payload
-        return Physics(mjcf.changed(self._asset, values), self.physics, reads=self._reads)
+        return Physics(mjcf.changed(asset, values), self.physics, reads=reads)
