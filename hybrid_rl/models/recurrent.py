@@ -30,13 +30,16 @@ from hybrid_rl.networks import MLP, Widths, apply
 from hybrid_rl.protocols import Trainable
 from hybrid_rl.types import Spec
 
+WHOLE = "be a whole number, 2 or more; give episode.history=32"
+Seen = Annotated[int, Must(lambda k: isinstance(k, int) and k > 1, WHOLE)]
+
 
 @part
 class Recurrent:
     """`model`, a single one or an ensemble, at states with a memory of `memory` numbers."""
 
     model: Trainable
-    history: Annotated[int, Must(lambda k: k > 1, "be 2 or more; give episode.history=32")]
+    history: Seen = 32  # observations from which the memory is read, as in the episode
     memory: Count = 32
     hidden: Widths = (64,)  # of the network of K and y
 
