@@ -42,8 +42,8 @@ AFTER, FIRST, EVERY = (1, 2, 5, 10, 20), 40, 10  # imagined decisions; starts in
 def learner(sees: str, batch: int) -> tuple[ModelLearner, Spec]:
     """What learns a model of what `sees` sees, and its sizes."""
     k = SEES[sees]
-    whole_ = Spec(obs=2 * POSITIONS + 1, act=ACTIONS, dt=DT)
-    spec = history.seen(whole_._replace(obs=POSITIONS), k) if k else whole_
+    sizes = Spec(obs=2 * POSITIONS + 1, act=ACTIONS, dt=DT)
+    spec = history.seen(sizes._replace(obs=POSITIONS), k) if k else sizes
     member: Any = Gaussian((200, 200), "silu")
     model: Any = Ensemble(member, 2)
     model = Recurrent(model, k) if sees.startswith("recurrent") else model
@@ -112,8 +112,8 @@ def main() -> None:
             print(seed, sees, dict(zip(AFTER, values, strict=True)), flush=True)
             for j, value in zip(AFTER, values, strict=True):
                 found.setdefault(sees, {}).setdefault(str(j), []).append(value)
-        numbers_ = {"seeds": given["seeds"], "rewards": found}
-        Path(out).write_text(json.dumps(numbers_, indent=1) + "\n", encoding="utf-8")
+        values = {"seeds": given["seeds"], "rewards": found}
+        Path(out).write_text(json.dumps(values, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

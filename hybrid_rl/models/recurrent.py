@@ -63,17 +63,10 @@ class Recurrent:
         return {**inner, "weights": {"model": inner["weights"], "filter": net}}
 
     def observe(self, params: dict[str, Any], obs: Array, next_obs: Array) -> dict[str, Any]:
-        """Parameters with statistics of o and v in histories [B, s] and successors; h has none."""
-        old = params["state"]
-        moving = old.mean.size - self.memory
+        """Parameters with statistics of histories [B, s] and successors; h stays as it is."""
+        moving = params["state"].mean.size - self.memory
         x = jnp.pad(obs[:, :moving], ((0, 0), (0, self.memory)))
-        new = self.model.observe(params, x, next_obs)
-        state = jax.tree.map(
-            lambda new, old: jnp.concatenate((new[:moving], old[moving:])) if new.ndim else new,
-            new["state"],
-            old,
-        )
-        return {**new, "state": state}
+        return self.model.observe(params, x, next_obs)
 
     def lift(self, params: dict[str, Any], obs: Array) -> Array:
         """x [n] after a history [s]."""

@@ -76,7 +76,7 @@ class Job:
     """K runs, their folders, what sets each apart, and the numbers in which they differ."""
 
     runs: Sequence[Run]
-    folders: Sequence[Path] = ()  # once there are such
+    folders: Sequence[Path] = ()  # none yet
     values: Sequence[Mapping[str, float]] = ({},)  # [K] key -> value
     axis: Axis = field(default_factory=Axis)
     start: Start | None = None  # what the learners of new runs begin with

@@ -92,26 +92,31 @@ def test_a_memory_of_equal_decisions_is_what_each_tells(bias, params):
 
 
 def test_model_and_reward_teach_the_memory(lived):
-    """The model alone moves the filter's weights; with a reward they move elsewhere."""
+    """Other rewards move the filter elsewhere, from the same weights and decisions."""
     obs, u, s = lived
-    spec = history.seen(SPEC, K)
-    ones = jnp.ones(7)
-    batch = Batch(s[:-1], u[:-1], obs[1:, 0] * 3, 0 * ones, 0 * ones, s[1:])
+    none = jnp.zeros(7)
+    batch = Batch(s[:-1], u[:-1], obs[1:, 0], none, none, s[1:])
     both = jax.tree.map(lambda leaf: jnp.concatenate((leaf, leaf)), batch)  # of two members
 
-    def moved(reward, factor=1.0):
-        learner = ModelLearner(MODEL, reward, batch_size=7, learning_rate=1e-3)
-        state = learner.init(KEY, spec)
-        given = both._replace(reward=factor * both.reward)
-        after, metrics = jax.jit(learner.update)(state, Params(), given, KEY)
-        net = jax.tree.map(
-            jnp.subtract, after.model["weights"]["filter"], state.model["weights"]["filter"]
+    def moved(learner, sign):
+        state = learner.init(KEY, history.seen(SPEC, K))
+        given = both._replace(reward=sign * both.reward)
+        after = jax.jit(learner.update)(state, Params(), given, KEY)[0]
+        nets = (each.model["weights"]["filter"] for each in (after, state))
+        return np.concatenate(
+            [leaf.ravel() for leaf in jax.tree.leaves(jax.tree.map(jnp.subtract, *nets))]
         )
-        return jax.tree.leaves(net), metrics
 
-    alone, with_reward = moved(None)[0], moved(RewardNetwork((8,)))[0]
-    assert all(np.abs(leaf).max() > 1e-4 for leaf in alone)
-    assert any(not np.allclose(a, b) for a, b in zip(alone, with_reward, strict=True))
+    alone, paid = (ModelLearner(MODEL, r, batch_size=7) for r in (None, RewardNetwork((8,))))
+    assert np.abs(moved(alone, 1)).max() > 1e-4
+    np.testing.assert_array_equal(moved(alone, 1), moved(alone, -1))
+    assert np.abs(moved(paid, 1) - moved(paid, -1)).max() > 1e-4
+
+
+def test_statistics_leave_the_memory_as_it_is(params):
+    """h is in [-1, 1] already: mean 0, scale 1."""
+    mean, scale = params["state"].mean[2 * D :], params["state"].scale[2 * D :]
+    np.testing.assert_array_equal((mean, scale), ([0.0] * H, [1.0] * H))
 
 
 def test_it_needs_a_history():
