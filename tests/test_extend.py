@@ -185,8 +185,14 @@ def test_a_planner_is_one_file(conf, tmp_path):
     (conf / "algo" / "mine.yaml").write_text(method)
     train(conf, tmp_path / "run", "task=pendulum", "mine.horizon=3", "algo=mine")
     assert '"planner/std"' in (tmp_path / "run" / "metrics.jsonl").read_text()
-    alone = "algo=mppi model=world +planner@mine=mine controllers.full=${mine} task=pendulum"
-    agent = config.build(config.load([*alone.split(), "mine.horizon=3"], config_dir=conf)).agent
+    words = ["planner=mine", "planner.horizon=3", "task=pendulum"]
+    swapped = config.load(words, config_dir=conf)
+    full = swapped.controllers.full
+    assert full.horizon == 3
+    assert "temperature" not in full  # of the method's own planner
+    run = config.build(swapped)
+    assert {type(run.controllers[mode]).__name__ for mode in ("full", "planner")} == {"Refit"}
+    agent = config.build(config.load([*words, "algo=mppi"], config_dir=conf)).agent
     metrics = jax.jit(lambda: agent.step(agent.init(jax.random.key(0)), jnp.int32(0))[1])()
     assert 0 < metrics["planner/std"] < 0.1  # 0.02; 0.3 to 0.4 where all plans are as good
 

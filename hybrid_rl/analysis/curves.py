@@ -143,19 +143,19 @@ def plural(count: int, noun: str) -> str:
     return f"{count:,} {noun}{'s' * (count != 1)}"
 
 
-def area(curve: Curve, until: float = np.inf) -> np.ndarray:
-    """[S] mean of each learner's metric over the run: the area under its curve over its width.
+def area(curve: Curve, since: float = -np.inf, until: float = np.inf) -> np.ndarray:
+    """[S] mean of each learner's metric: the area under its curve over its width.
 
-    Up to the last point that all learners have, or up to x = `until` before it; NaN if there is
-    none. The first value is taken to hold from 0 on.
+    Between the first and the last point that all learners have, or from x = `since` to x = `until`
+    within them; NaN if there is none.
     """
     x, each = curve.x[curve.shared], curve.each[:, curve.shared]
-    if not len(x):
+    if not len(x) or max(x[0], since) > min(x[-1], until):
         return np.full(len(each), np.nan)
-    end = min(x[-1], until)
-    before, last = x < end, [[np.interp(end, x, y)] for y in each]
-    y = np.concatenate([each[:, :1], each[:, before], last], axis=1)
-    return np.trapezoid(y, np.array([0.0, *x[before], end]), axis=1) / end
+    ends = np.array([max(x[0], since), min(x[-1], until)])
+    at = np.union1d(ends, x[(ends[0] < x) & (x < ends[1])])
+    y = np.stack([np.interp(at, x, own) for own in each])
+    return np.trapezoid(y, at, axis=1) / (at[-1] - at[0]) if len(at) > 1 else y[:, 0]
 
 
 def improvement(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float]:

@@ -141,11 +141,11 @@ def summary(numbers: dict[str, Any]) -> list[str]:
         )
     for each in numbers["comparisons"] if "comparisons" in numbers else comparisons(drawn):
         rate, low, high = each["share"], *each["band"]
-        until = each.get("until")  # older files lack it
+        between = each.get("between")  # older files lack it
         lines.append(
             f"{each['task']}, {each['metric']}: {each['label']} ahead of {each['other']} in "
             f"{rate:.0%} [{low:.0%}, {high:.0%}] of pairs of seeds, by the mean "
-            + ("over the run" if until is None else f"up to {until:,.10g}, where the shorter ends")
+            + ("over the run" if between is None else "between {:,.10g} and {:,.10g}".format(*between))
         )
     if any(1 < len(curve.seeds) <= FEW for curve in drawn):
         lines.append(
@@ -158,19 +158,21 @@ def comparisons(drawn: Sequence[Curve]) -> list[dict[str, Any]]:
     """For each two curves of a task and a metric, the share of pairs of seeds that one leads.
 
     That is Agarwal et al.'s probability of improvement, of the means over the run, and its band;
-    `until` is the x where the shorter one ends, None if both end there.
+    Where they begin or end apart these are means over what both have, `between` two x.
     """
     found = []
     for one, other in itertools.combinations(drawn, 2):
         both = one.shared.any() and other.shared.any()
         if both and (one.task, one.metric) == (other.task, other.metric):
-            ends = [float(curve.x[curve.shared][-1]) for curve in (one, other)]
-            share, *band = improvement(*(area(curve, min(ends)) for curve in (one, other)))
+            shared = [curve.x[curve.shared] for curve in (one, other)]
+            since, until = max(x[0] for x in shared), min(x[-1] for x in shared)
+            if since > until:
+                continue
+            share, *band = improvement(*(area(curve, since, until) for curve in (one, other)))
+            whole = all((x[0], x[-1]) == (since, until) for x in shared)
             named = {"task": one.task, "metric": one.metric, "label": one.label}
-            until = None if ends[0] == ends[1] else min(ends)
-            found.append(
-                {**named, "other": other.label, "share": share, "band": band, "until": until}
-            )
+            named |= {"other": other.label, "share": share, "band": band}
+            found.append(named | {"between": None if whole else [float(since), float(until)]})
     return found
 
 

@@ -17,7 +17,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import history, statistics
+from hybrid_rl.core import circles, history, statistics
 from hybrid_rl.core.lifting import check_coordinates
 from hybrid_rl.fields import FILLED, Fraction, part
 from hybrid_rl.networks import MLP, Activation, LayerNorm, Widths, apply
@@ -37,6 +37,7 @@ class Gaussian:
     inputs: Annotated[tuple[int, ...], FILLED] | None = None  # of x; None: all
     layer_norm: LayerNorm = False  # of every hidden layer; or shift: without a learned scale
     input_noise: Fraction = 0.0  # of x in the loss, in s
+    circles: bool = False  # imagined states stay on circles, such as sine and cosine (core.circles)
 
     members: ClassVar[int] = 1  # an ensemble has more
 
@@ -55,6 +56,8 @@ class Gaussian:
             "state": statistics.init(spec.obs),
             "change": statistics.init(new),
         }
+        if self.circles:
+            params["circles"] = circles.init(new)
         return params if new == spec.obs else {**params, "dt": jnp.float32(spec.dt)}
 
     def observe(self, params: dict[str, Any], obs: Array, next_obs: Array) -> dict[str, Any]:
@@ -66,7 +69,10 @@ class Gaussian:
         new = before.shape[1]
         change = next_obs[:, :new] - before
         change = statistics.update(params["change"], change, state.magnitude[:new])
-        return {**params, "state": state, "change": change}
+        params = {**params, "state": state, "change": change}
+        if self.circles:
+            params["circles"] = circles.update(params["circles"], next_obs[:, :new])
+        return params
 
     def lift(self, params: dict[str, Any], obs: Array) -> Array:
         """The observation [o] itself."""
@@ -106,6 +112,7 @@ class Gaussian:
     def _after(self, params: dict[str, Any], x: Array, u: Array, change: Array) -> Array:
         """The state [n] after x [n] by a `change`; what is older in a history only shifts."""
         new = self._onward(params, x) + statistics.denormalise(params["change"], change)
+        new = circles.onto(params["circles"], new) if self.circles else new
         return history.shifted(x, u, new, params["dt"]) if "dt" in params else new
 
     def _onward(self, params: dict[str, Any], x: Array) -> Array:

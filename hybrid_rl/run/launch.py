@@ -245,6 +245,8 @@ def _run(job: Job, output: Output) -> dict[str, Any]:
         progress = stack.enter_context(shown)
         named = zip(job.folders, job.axis.names, strict=True)
         lines = [f"{label}{name and ' '}{name}: run folder {run_dir}" for run_dir, name in named]
+        random = run.agent.random_steps if config.resume is None else 0
+        lines += [f"the first {random:,} decisions are random"] * bool(random)
         progress.note("\n".join([*lines, fits(job.runs), *run.notes]))
         plan = Schedule(**{name: config[name] for name in Schedule.__dataclass_fields__})
         evaluated = {m: run.controllers[m] for m in config.eval_modes if m in run.controllers}

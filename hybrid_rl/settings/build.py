@@ -21,14 +21,21 @@ from hybrid_rl.fields import FieldError
 from hybrid_rl.files.targets import build as build_part
 from hybrid_rl.protocols import Controller
 from hybrid_rl.settings.complete import LACKING, complete, refusal, select
-from hybrid_rl.settings.compose import UNCOMPOSED, complete_names, explain, keys_of, settings_keys
+from hybrid_rl.settings.compose import (
+    UNCOMPOSED,
+    complete_names,
+    explain,
+    keys_of,
+    place_planner,
+    settings_keys,
+)
 from hybrid_rl.settings.groups import CONF, groups, register, search_path
 from hybrid_rl.settings.values import (
     COUNTS,
     PAID,
     SECTIONS,
     check,
-    random_decisions,
+    fitted,
     set_defaults,
     time_limit,
     whole,
@@ -114,6 +121,7 @@ def read(config: DictConfig) -> DictConfig:
     with open_dict(config):
         hydra = config.pop("hydra")
     complete_names(config, hydra)
+    place_planner(config, hydra)
     raw = plain(config)
     typed = keys_of(of_job(hydra), hydra) if raw["resume"] is None else []
     # a part that lacks a key of `settings` keeps what it has
@@ -143,7 +151,7 @@ def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
         values.pop(helper, None)
     words = (text for text in overrides if not re.match(r"\+*(sweep|hydra)\.|-", text))
     values["recipe"] = [re.sub(r"\$\{([^}]*)\}", r"$(\1)", text) for text in words]  # no references
-    values["random_steps"] = random_decisions(values, typed_values(overrides))
+    values |= fitted(values, typed_values(overrides))
     if values["task"] in ("gymnasium", "playground", "robot"):  # of many environments
         names = (values["env"].get(key) for key in ("make", "id", "name"))
         values["task"] = re.sub(r"[^A-Za-z0-9_.-]", "_", str(next(filter(None, names), "_")))

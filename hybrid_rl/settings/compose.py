@@ -92,6 +92,23 @@ def chosen(hydra: Any, group: str) -> Path | None:
     return next((file for file in files if file.is_file()), None)
 
 
+def place_planner(config: DictConfig, hydra: Any) -> None:
+    """Let a planner act of whose fields alone the user's file consists, in place of the method's.
+
+    Those of this package spread over the configuration. Arguments as of `complete_names`.
+    """
+    file = chosen(hydra, "planner")
+    if file is None or GLOBAL in file.read_text(encoding="utf-8")[:100]:
+        return
+    typed = (overrides.name(text) for text in overrides.of_job(hydra))
+    own = {*OmegaConf.load(file), *(key.split(".")[1] for key in typed if key[:8] == "planner.")}
+    with open_dict(config):
+        config.planner = {key: config.planner._get_node(key) for key in own}
+        config.controllers.full = "${planner}"
+        if "model_planner" in config:
+            config.model_planner = "${planner}"
+
+
 def complete_names(config: DictConfig, hydra: Any) -> None:
     """Give the runs of a task or a method of the user's the name of its file, if it says none.
 

@@ -45,23 +45,29 @@ def test_area_and_improvement(tmp_path):
     run(tmp_path / "a", [10.0, 20.0, 30.0], 0)
     run(tmp_path / "b", [20.0, 20.0, 20.0], 1)
     (curve,) = curves(tmp_path)
-    np.testing.assert_allclose(area(curve), [(10 * 10 + 15 * 10 + 25 * 10) / 30, 20])
+    np.testing.assert_allclose(area(curve), [20, 20])
+    np.testing.assert_allclose(area(curve, 0, 25), [17.5, 20])
+    np.testing.assert_allclose(area(curve, 30), [30, 20])
+    assert np.isnan(area(curve, 31)).all()
     assert improvement(np.array([1.0, 2]), np.array([1.0, 3]))[0] == (0.5 + 0 + 1 + 0) / 4
     assert improvement(np.array([1.0, 2]), np.array([-1.0, 0])) == (1, 1, 1)
 
 
-def test_methods_are_compared_as_far_as_both_ran(tmp_path):
-    """Both learn y = x; the longer one has the higher mean over its whole run."""
-    for algo, steps in (("long", [10, 20, 30]), ("short", [10, 15])):
+def test_methods_are_compared_where_both_have_values(tmp_path):
+    """All learn y = x; one is evaluated later and one ends sooner, which must not count."""
+    for algo, steps in (("long", [10, 20, 30]), ("late", [20, 30]), ("short", [10, 15])):
         for seed in range(2):
             points = [(step, float(step + seed)) for step in steps]
             run(tmp_path / algo / str(seed), points, seed, algo=algo)
     numbers = figure(str(tmp_path / "*/*"))[1]
-    (one,) = comparisons(curves(tmp_path))
-    assert numbers["comparisons"] == [one]
-    assert (one["label"], one["share"], one["until"]) == ("long", 0.5, 15)
-    line = "long ahead of short in 50% [0%, 100%] of pairs of seeds, by the mean up to 15, where"
-    assert any(line in each for each in summary(numbers))
+    found = comparisons(curves(tmp_path))
+    assert numbers["comparisons"] == found
+    assert [(one["label"], one["other"], one["share"], one["between"]) for one in found] == [
+        ("late", "long", 0.5, [20, 30]),
+        ("long", "short", 0.5, [10, 15]),
+    ]
+    line = "long ahead of short in 50% [0%, 100%] of pairs of seeds, by the mean between 10 and 15"
+    assert line in "\n".join(summary(numbers))
 
 
 def test_seeds_without_common_steps_meet_on_a_straight_line(tmp_path):

@@ -137,7 +137,7 @@ def test_the_summary_compares_methods():
     assert lines[0].startswith("hopper, a: 3 seeds, last train/return 1,500 [")
     assert " at 150,250, mean over the run " in lines[0]
     assert lines[2].startswith("hopper, train/return: a ahead of b in 11%")  # of seeds 2 and 0
-    assert lines[2].endswith("by the mean up to 150,250, where the shorter ends")
+    assert lines[2].endswith("by the mean between 1,000 and 150,250")
     few = "note: with 4 seeds or fewer an interval is their range, and not a 95% one"
     assert lines[3:] == [few, "note: a note"]
     assert all(len(summary(numbers_of([curve(seeds=n)]))) == 1 for n in (1, 5))

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from toys import begun
 
+from hybrid_rl.core import circles
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.models.gaussian import Gaussian
 from hybrid_rl.types import Spec
@@ -124,3 +125,17 @@ def test_the_known_physics_of_the_how_to_are_those_of_the_pendulum() -> None:
     error = jax.vmap(lambda x: model.step(params, x, u[0]))(starts.obs) - after
     assert np.abs(error).max() < 0.05  # of steps of Euler's kind: 0.05^2 s^2 times 17 rad/s^2
     assert np.abs(after - starts.obs).max() > 0.5
+
+
+def test_circles_that_were_observed_are_kept() -> None:
+    """A model that has learned nothing predicts sines and cosines of some angle."""
+    model = Gaussian(hidden=(8,), circles=True)
+    params, angles = begun(model, SPEC), jnp.linspace(-2, 2, 50)
+    obs = jnp.stack((jnp.cos(angles), angles, jnp.sin(angles)), 1)
+    for _ in range(circles.LEAST):
+        params = model.observe(params, obs[:-1], obs[1:])
+    for after in (model.step(params, X, U), *model.draw(params, X[None], U[None], X[None], KEY)):
+        assert after[0] ** 2 + after[2] ** 2 == pytest.approx(1)
+    plain = Gaussian(hidden=(8,)).step({k: v for k, v in params.items() if k != "circles"}, X, U)
+    assert model.step(params, X, U)[1] == plain[1]
+    assert abs(plain[0] ** 2 + plain[2] ** 2 - 1) > 0.1

@@ -64,6 +64,7 @@ def examine(folder: Path | str) -> dict[str, str]:
 def main() -> None:
     """The command."""
     folder = Path(arguments.read(__doc__, ARGUMENTS)[0]["run"])
+    print(f"{folder}: {len(CHECKS)} checks, some by new episodes", flush=True)
     found = examine(folder)
     width = max(map(len, found), default=0)
     for name, line in found.items():
