@@ -145,7 +145,11 @@ def summary(numbers: dict[str, Any]) -> list[str]:
         lines.append(
             f"{each['task']}, {each['metric']}: {each['label']} ahead of {each['other']} in "
             f"{rate:.0%} [{low:.0%}, {high:.0%}] of pairs of seeds, by the mean "
-            + ("over the run" if between is None else "between {:,.10g} and {:,.10g}".format(*between))
+            + (
+                "over the run"
+                if between is None
+                else "between {:,.10g} and {:,.10g}".format(*between)
+            )
         )
     if any(1 < len(curve.seeds) <= FEW for curve in drawn):
         lines.append(

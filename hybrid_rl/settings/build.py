@@ -26,7 +26,7 @@ from hybrid_rl.settings.compose import (
     complete_names,
     explain,
     keys_of,
-    place_planner,
+    adopt_planner,
     settings_keys,
 )
 from hybrid_rl.settings.groups import CONF, groups, register, search_path
@@ -121,7 +121,7 @@ def read(config: DictConfig) -> DictConfig:
     with open_dict(config):
         hydra = config.pop("hydra")
     complete_names(config, hydra)
-    place_planner(config, hydra)
+    adopt_planner(config, hydra)
     raw = plain(config)
     typed = keys_of(of_job(hydra), hydra) if raw["resume"] is None else []
     # a part that lacks a key of `settings` keeps what it has

@@ -92,7 +92,7 @@ def chosen(hydra: Any, group: str) -> Path | None:
     return next((file for file in files if file.is_file()), None)
 
 
-def place_planner(config: DictConfig, hydra: Any) -> None:
+def adopt_planner(config: DictConfig, hydra: Any) -> None:
     """Let a planner act of whose fields alone the user's file consists, in place of the method's.
 
     Those of this package spread over the configuration. Arguments as of `complete_names`.
