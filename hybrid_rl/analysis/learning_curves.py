@@ -141,15 +141,12 @@ def summary(numbers: dict[str, Any]) -> list[str]:
         )
     for each in numbers["comparisons"] if "comparisons" in numbers else comparisons(drawn):
         rate, low, high = each["share"], *each["band"]
-        between = each.get("between")  # older files lack it
+        where = "over the run"
+        if between := each.get("between"):  # older files lack it
+            where = "between {:,.10g} and {:,.10g}".format(*between)
         lines.append(
             f"{each['task']}, {each['metric']}: {each['label']} ahead of {each['other']} in "
-            f"{rate:.0%} [{low:.0%}, {high:.0%}] of pairs of seeds, by the mean "
-            + (
-                "over the run"
-                if between is None
-                else "between {:,.10g} and {:,.10g}".format(*between)
-            )
+            f"{rate:.0%} [{low:.0%}, {high:.0%}] of pairs of seeds, by the mean {where}"
         )
     if any(1 < len(curve.seeds) <= FEW for curve in drawn):
         lines.append(

@@ -5,7 +5,6 @@ A pair is on a circle if, over LEAST batches or more, the sum of its squares is 
 while each square alone varies by 1% or more.
 """
 
-import jax
 import jax.numpy as jnp
 from flax import struct
 from jax import Array

@@ -23,10 +23,10 @@ from hybrid_rl.protocols import Controller
 from hybrid_rl.settings.complete import LACKING, complete, refusal, select
 from hybrid_rl.settings.compose import (
     UNCOMPOSED,
+    adopt_planner,
     complete_names,
     explain,
     keys_of,
-    adopt_planner,
     settings_keys,
 )
 from hybrid_rl.settings.groups import CONF, groups, register, search_path
