@@ -9,6 +9,8 @@ With `input_noise` c it learns from x + c s N(0, I), though always to predict th
 it predicts from its own errors returns to the states that exist, where an entry follows from others
 (a sine and a cosine), instead of drifting away (Sanchez-Gonzalez et al. 2020, "Learning to simulate
 complex physics with graph networks"). Noise that x does not reveal enlarges s: c is well below 1.
+
+With `circles` it finds the pairs that do so, and what it predicts stays on them (`core.circles`).
 """
 
 from typing import Annotated, Any, ClassVar
@@ -37,7 +39,7 @@ class Gaussian:
     inputs: Annotated[tuple[int, ...], FILLED] | None = None  # of x; None: all
     layer_norm: LayerNorm = False  # of every hidden layer; or shift: without a learned scale
     input_noise: Fraction = 0.0  # of x in the loss, in s
-    circles: bool = False  # imagined states stay on circles, such as sine and cosine (core.circles)
+    circles: bool = False  # predictions stay on the circles that were observed
 
     members: ClassVar[int] = 1  # an ensemble has more
 

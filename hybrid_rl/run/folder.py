@@ -190,7 +190,8 @@ def parse_config(folder: Path, key: str = "runs") -> DictConfig:
     """
     path = folder / "config.yaml"
     if not path.exists():
-        flaw = "no run folder there (no config.yaml in it)"
+        inside = max((str(file.parent) for file in folder.glob("*/config.yaml")), default="")
+        flaw = "no run folder there (no config.yaml in it)" + f"; in it is {inside}" * bool(inside)
         if runs := members(folder):
             listed = ", ".join(f"{run} ({words(values)})" for run, values in runs.items())
             flaw = f"holds a sweep; give one of its runs: {listed}"

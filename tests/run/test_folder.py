@@ -147,6 +147,14 @@ def test_it_is_short_and_builds_the_same_run(task, algo, tmp_path):
     assert config.build(written).agent == config.build(composed).agent
 
 
+def test_a_folder_above_runs_names_the_newest(tmp_path):
+    for time in ("2026-01-01_10-00-00", "2026-01-02_09-00-00"):
+        (tmp_path / time).mkdir()
+        (tmp_path / time / "config.yaml").touch()
+    with pytest.raises(UsageError, match=r"no run folder there .*; in it is .*2026-01-02_\S*$"):
+        run_folder.parse_config(tmp_path, "run")
+
+
 def test_a_word_that_reads_as_a_number_stays_a_word():
     values = {"a": "1e-3", "b": "12", "c": "on", "d": 1e-3, "e": None, "f": ["1", 2], "g": True}
     part = {"_target_": "a.B", **values}
