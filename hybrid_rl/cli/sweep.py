@@ -123,9 +123,9 @@ class Sweeper:
 
     def _forced(self, job: Sequence[str]) -> list[str]:
         """The overrides of a job as Hydra takes them."""
-        loader = self.hydra_context.config_loader
+        options = self.hydra_context.config_loader.get_group_options
         names = {words.name(text).partition("@")[0] for text in job}
-        return forced(job, {each for each in names if loader.get_group_options(each)})
+        return forced(job, {each for each in names if options(each, None)})  # or folders of them
 
     def _checked(self, jobs: Sequence[Sequence[str]]) -> list[DictConfig]:
         """What the runs of the jobs read, after all checks that need no compilation."""

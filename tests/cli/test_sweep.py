@@ -87,6 +87,15 @@ def test_a_choice_that_the_default_method_lacks(given):
     assert [each.algo for each in given] == ["kle3", "kle3_jensen"]
 
 
+def test_an_experiment_in_a_folder_is_swept(given):
+    """As those of the thesis, each of which has its methods."""
+    assert call_train("-m", "experiment=thesis/fig_3_2_pendulum", "algo=sac,nn_mppi") == 0
+    assert [(config.task, config.algo) for config in given] == [
+        ("pendulum", "sac"),
+        ("pendulum", "nn_mppi"),
+    ]
+
+
 def test_a_sweep_may_be_imported_before_hydra_searches_for_plugins(given):
     """Hydra then executes the modules of its own sweepers again: there are two of each class."""
     importlib.import_module("hybrid_rl.cli.sweep")
