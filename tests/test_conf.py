@@ -125,21 +125,6 @@ def test_random_decisions_leave_half_of_a_short_run_to_learning(given, random) -
     assert config.load(["task=halfcheetah", *given]).random_steps == random
 
 
-@pytest.mark.parametrize(
-    ("given", "every"),
-    [
-        (["total_steps=6000"], 1500),
-        (["total_steps=6000", "settings=light"], 1500),  # of its own 3,000
-        (["total_steps=20000"], 5000),
-        (["total_steps=6000", "eval_every=4000"], 4000),
-        (["settings=light"], 3000),
-    ],
-)
-def test_a_short_run_is_evaluated_four_times(given, every) -> None:
-    """What the task and the settings say holds for their own total_steps."""
-    assert config.load(["task=halfcheetah", *given]).eval_every == every
-
-
 def test_how_a_hybrid_method_learns_is_one_override() -> None:
     for algo in ("hybrid_stochastic", "hybrid_disagreement"):
         c = config.load(["learning=mbpo", f"algo={algo}"])

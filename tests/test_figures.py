@@ -131,7 +131,7 @@ def test_learning_curves_are_the_default(tmp_path, capsys):
     assert [one["x"][-1] for one in numbers["curves"]] == [1000, 1000]
     assert numbers["metric"] == "train/return"
     named = {"task": "hopper", "metric": "train/return", "label": "nn_mppi", "other": "sac"}
-    assert numbers["comparisons"] == [named | {"share": 0.5, "band": [0.0, 1.0], "until": None}]
+    assert numbers["comparisons"] == [named | {"share": 0.5, "band": [0.0, 1.0], "between": None}]
 
 
 @pytest.mark.parametrize(

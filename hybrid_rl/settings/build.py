@@ -35,7 +35,7 @@ from hybrid_rl.settings.values import (
     PAID,
     SECTIONS,
     check,
-    fitted,
+    random_decisions,
     set_defaults,
     time_limit,
     whole,
@@ -151,7 +151,7 @@ def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
         values.pop(helper, None)
     words = (text for text in overrides if not re.match(r"\+*(sweep|hydra)\.|-", text))
     values["recipe"] = [re.sub(r"\$\{([^}]*)\}", r"$(\1)", text) for text in words]  # no references
-    values |= fitted(values, typed_values(overrides))
+    values["random_steps"] = random_decisions(values, typed_values(overrides))
     if values["task"] in ("gymnasium", "playground", "robot"):  # of many environments
         names = (values["env"].get(key) for key in ("make", "id", "name"))
         values["task"] = re.sub(r"[^A-Za-z0-9_.-]", "_", str(next(filter(None, names), "_")))

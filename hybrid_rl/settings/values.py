@@ -76,18 +76,15 @@ def time_limit(env: External | Robot, given: Mapping[str, Any]) -> dict[str, int
     return {"steps": -(-env.known.steps // given.get("action_repeat", 1))}
 
 
-def fitted(values: Mapping[str, Any], given: Mapping[str, str]) -> dict[str, int]:
-    """What fits a `total_steps` that the user gave, where the user did not give that, too.
+def random_decisions(values: Mapping[str, Any], given: Mapping[str, str]) -> Any:
+    """`random_steps`: half of `total_steps` at most, where the user gave these and not those.
 
-    Half of the decisions are random at most, and a run is evaluated four times or more.
     values: of the configuration; given: overrides of the user, key -> value.
     """
-    total, random = values["total_steps"], {"random_steps", "model_random_steps"}
-    if "total_steps" not in given or type(total) is not int:
-        return {}
-    most = {"random_steps": (total + 1) // 2} if not random & given.keys() else {}
-    most |= {"eval_every": max(total // 4, 1)} if "eval_every" not in given else {}
-    return {key: min(values[key], n) for key, n in most.items() if type(values[key]) is int}
+    random, total = values["random_steps"], values["total_steps"]
+    if "total_steps" not in given or {"random_steps", "model_random_steps"} & given.keys():
+        return random
+    return min(random, (total + 1) // 2) if type(random) is type(total) is int else random
 
 
 def set_defaults(learners: DictConfig, decisions: int, history: int) -> None:

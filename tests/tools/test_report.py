@@ -125,7 +125,7 @@ def test_seeds_make_a_band_and_the_numbers_are_those_of_the_rows(runs):
     assert "2 (seeds 0, 1)" in cells
     assert report._span([3]) == "1 (seed 3)"
     assert report._span([0, 1, 2]) == "3 (seeds 0 to 2)"
-    area = (10 * 1 + 15 * 1 + 25 * 1) / 3 + 0.5  # of seeds 0 and 1, which is 1 above
+    area = (15 + 25) / 2 + 0.5  # of seeds 0 and 1, which is 1 above
     ends = cells[at + 4].split()[0], cells[at + 5].split()[0]
     assert ends == ("30.5", f"{area:.4g}")
     assert cells[at + 4].endswith("[30, 31]")

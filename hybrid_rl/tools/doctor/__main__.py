@@ -15,6 +15,7 @@ if __name__ == "__main__":
 
     command.install()
 
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -64,7 +65,7 @@ def examine(folder: Path | str) -> dict[str, str]:
 def main() -> None:
     """The command."""
     folder = Path(arguments.read(__doc__, ARGUMENTS)[0]["run"])
-    print(f"{folder}: {len(CHECKS)} checks, some by new episodes", flush=True)
+    print(f"{folder}: {len(CHECKS)} checks, some by new episodes", file=sys.stderr, flush=True)
     found = examine(folder)
     width = max(map(len, found), default=0)
     for name, line in found.items():
