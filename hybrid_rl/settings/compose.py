@@ -100,10 +100,10 @@ def adopt_planner(config: DictConfig, hydra: Any) -> None:
     file = chosen(hydra, "planner")
     if file is None or GLOBAL in file.read_text(encoding="utf-8")[:100]:
         return
-    typed = (overrides.name(text) for text in overrides.of_job(hydra))
-    own = {*OmegaConf.load(file), *(key.split(".")[1] for key in typed if key[:8] == "planner.")}
+    typed = (overrides.name(text).split(".") for text in overrides.of_job(hydra))
+    own = {*OmegaConf.load(file), *(key[0] for group, *key in typed if group == "planner" and key)}
     with open_dict(config):
-        config.planner = {key: config.planner._get_node(key) for key in own}
+        config.planner = OmegaConf.masked_copy(config.planner, sorted(own))
         config.controllers.full = "${planner}"
         if "model_planner" in config:
             config.model_planner = "${planner}"
