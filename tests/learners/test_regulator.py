@@ -3,6 +3,7 @@
 import jax
 import jax.numpy as jnp
 import numpy as np
+import pytest
 from scipy.linalg import solve_discrete_are
 
 from hybrid_rl.envs.analytic.pendulum import Pendulum
@@ -51,17 +52,17 @@ def test_feed_forward_holds_a_goal_that_needs_an_action() -> None:
     np.testing.assert_allclose(Linear().mean(aimed, goal), aimed["hold"])
 
 
-def test_any_model_with_derivatives_has_a_regulator() -> None:
-    """The exact model of the pendulum, upright: its gain over 200 decisions."""
-    world = Pendulum()
+@pytest.mark.parametrize("world", [Pendulum(), PointMass()])
+def test_any_model_with_derivatives_has_a_regulator(world) -> None:
+    """The exact one of the pendulum, upright, and of the point mass: gains over 200 decisions."""
     learner = RegulatorLearner(Exact(world), Linear(), world, (1.0,), (0.1,), horizon=200)
     state = learner.init(jax.random.key(0), world.spec)
     state, metrics = jax.jit(learner.update)(state, Params(), None, jax.random.key(0))
     A, B = linearised(world.dynamics, *world.equilibrium())
-    P, K = np.eye(3), np.zeros((1, 3))
+    P, K = np.eye(len(A)), np.zeros_like(B.T)
     for _ in range(200):
-        K = np.linalg.solve(0.1 * np.eye(1) + B.T @ P @ B, B.T @ P @ A)
-        P = np.eye(3) + A.T @ P @ (A - B @ K)
+        K = np.linalg.solve(0.1 * np.eye(len(K)) + B.T @ P @ B, B.T @ P @ A)
+        P = np.eye(len(A)) + A.T @ P @ (A - B @ K)
     np.testing.assert_allclose(state.policy["gain"], K, rtol=1e-3, atol=1e-4)
     np.testing.assert_array_equal(state.policy["goal"], world.equilibrium()[0])
     np.testing.assert_allclose(state.policy["hold"], 0, atol=1e-6)
