@@ -46,95 +46,6 @@ class Machine(NamedTuple):
     count: Array  # [] points
 
 
-def begin(capacity: int, size: int) -> Machine:
-    """A machine without points, for up to `capacity` points of `size` coordinates."""
-    zeros = jnp.zeros(capacity)
-    none = jnp.zeros((), jnp.int32)
-    return Machine(jnp.zeros((capacity, size)), zeros, zeros, zeros, zeros, none)
-
-
-def kernel(s: Array, points: Array, length: float) -> Array:
-    """k [N] of s [d] with points [N, d]."""
-    return jnp.exp(-0.5 * jnp.sum((points - s[None]) ** 2, -1) / length**2)
-
-
-def add(machine: Machine, s: Array, label: Array, length: float, apart: float) -> Machine:
-    """The machine with a point s [d] of `label` [], not yet optimised.
-
-    A point closer than `apart` to one with the same label adds 1 to that one's weight. So does any
-    point, to the nearest of its label, where the machine is full; if there is none, it is dropped.
-    """
-    distance = jnp.sqrt(jnp.sum((machine.s - s[None]) ** 2, -1))
-    distance = jnp.where(machine.label == label, distance, jnp.inf)
-    nearest = jnp.argmin(distance)
-    full = machine.count >= len(machine.label)
-    joins = jnp.isfinite(distance[nearest]) & (full | (distance[nearest] < apart))
-    enters = ~joins & ~full
-    slot = jnp.where(joins, nearest, jnp.minimum(machine.count, len(machine.label) - 1))
-    output = kernel(s, machine.s, length) @ machine.dual
-    return Machine(
-        machine.s.at[slot].set(jnp.where(enters, s, machine.s[slot])),
-        machine.label.at[slot].set(jnp.where(enters, label, machine.label[slot])),
-        machine.weight.at[slot].add(jnp.where(enters | joins, 1.0, 0.0)),
-        machine.dual,
-        machine.output.at[slot].set(jnp.where(enters, output, machine.output[slot])),
-        machine.count + enters.astype(jnp.int32),
-    )
-
-
-def _errors(machine: Machine, cost: float) -> tuple[Array, Array, Array, Array]:
-    """E [C] where v can rise, else -inf; where it can fall, else inf; lowest and highest v [C]."""
-    bound = cost * machine.weight
-    low = jnp.where(machine.label < 0, -bound, 0.0)
-    high = jnp.where(machine.label > 0, bound, 0.0)
-    error = machine.label - machine.output
-    rising = jnp.where(machine.dual < high, error, -jnp.inf)
-    falling = jnp.where(machine.dual > low, error, jnp.inf)
-    return rising, falling, low, high
-
-
-def optimise(machine: Machine, iterations: int, length: float, cost: float) -> Machine:
-    """The machine after `iterations` on pairs of duals; `cost` is C."""
-
-    def one(_: Array, machine: Machine) -> Machine:
-        rising, falling, low, high = _errors(machine, cost)
-        i = jnp.argmax(rising)
-        k_i = kernel(machine.s[i], machine.s, length)
-        curvature = jnp.maximum(2 - 2 * k_i, 1e-6)
-        gap = jnp.where(jnp.isfinite(falling), rising[i] - falling, -jnp.inf)
-        j = jnp.argmax(jnp.where(gap > 0, gap**2 / curvature, -jnp.inf))
-        step = jnp.minimum(gap[j] / curvature[j], high[i] - machine.dual[i])
-        step = jnp.minimum(step, machine.dual[j] - low[j])
-        step = jnp.where(jnp.isfinite(rising[i]) & (gap[j] > 0), step, 0.0)
-        k_j = kernel(machine.s[j], machine.s, length)
-        return machine._replace(
-            dual=machine.dual.at[i].add(step).at[j].add(-step),
-            output=machine.output + step * (k_i - k_j),
-        )
-
-    return jax.lax.fori_loop(0, iterations, one, machine)
-
-
-def bias(machine: Machine, cost: float) -> Array:
-    """b []: -1 while all labels are -1, and 0 without points."""
-    rising, falling, _, _ = _errors(machine, cost)
-    up, down = jnp.max(rising), jnp.min(falling)
-    up, down = jnp.where(jnp.isfinite(up), up, down), jnp.where(jnp.isfinite(down), down, up)
-    return jnp.where(machine.count > 0, (up + down) / 2, 0.0)
-
-
-def gap(machine: Machine, cost: float) -> Array:
-    """max E where v can rise minus min E where it can fall []; 0 where the duals are optimal."""
-    rising, falling, _, _ = _errors(machine, cost)
-    apart = jnp.max(rising) - jnp.min(falling)
-    return jnp.where(jnp.isfinite(apart), jnp.maximum(apart, 0.0), 0.0)
-
-
-def decision(machine: Machine, s: Array, length: float, cost: float) -> Array:
-    """f(s) [] at s [d]."""
-    return kernel(s, machine.s, length) @ machine.dual + bias(machine, cost)
-
-
 @part
 class SupportVectors:
     """A belief about the probability that a binary measurement is 1.
@@ -153,17 +64,79 @@ class SupportVectors:
 
     def init(self, key: Array, spec: Spec) -> Machine:
         """The belief before any measurement; the key is not used."""
-        return begin(self.capacity, self.size)
+        zeros, none = jnp.zeros(self.capacity), jnp.zeros((), jnp.int32)
+        s = jnp.zeros((self.capacity, self.size))
+        return Machine(s, zeros, zeros, zeros, zeros, none)
 
     def add(self, state: Machine, s: Array, y: Array, key: Array) -> Machine:
         """The belief after y [], 0 or 1, was measured at s [d]; the key is not used."""
-        label = jnp.where(y > 0.5, 1.0, -1.0)
-        state = add(state, s, label, self.length, self.apart)
-        return optimise(state, self.iterations, self.length, self.cost)
+        return self.optimised(self.joined(state, s, jnp.where(y > 0.5, 1.0, -1.0)))
+
+    def joined(self, machine: Machine, s: Array, label: Array) -> Machine:
+        """The machine with a point s [d] of `label` [], not yet optimised.
+
+        A point closer than `apart` to one with the same label adds 1 to that one's weight. So does
+        any point, to the nearest of its label, where the machine is full; if there is none, it is
+        dropped.
+        """
+        distance = jnp.sqrt(jnp.sum((machine.s - s[None]) ** 2, -1))
+        distance = jnp.where(machine.label == label, distance, jnp.inf)
+        nearest = jnp.argmin(distance)
+        full = machine.count >= self.capacity
+        joins = jnp.isfinite(distance[nearest]) & (full | (distance[nearest] < self.apart))
+        enters = ~joins & ~full
+        slot = jnp.where(joins, nearest, jnp.minimum(machine.count, self.capacity - 1))
+        output = self.kernel(s, machine.s) @ machine.dual
+        return Machine(
+            machine.s.at[slot].set(jnp.where(enters, s, machine.s[slot])),
+            machine.label.at[slot].set(jnp.where(enters, label, machine.label[slot])),
+            machine.weight.at[slot].add(jnp.where(enters | joins, 1.0, 0.0)),
+            machine.dual,
+            machine.output.at[slot].set(jnp.where(enters, output, machine.output[slot])),
+            machine.count + enters.astype(jnp.int32),
+        )
+
+    def optimised(self, machine: Machine) -> Machine:
+        """The machine after `iterations` on pairs of duals."""
+
+        def one(_: Array, machine: Machine) -> Machine:
+            rising, falling, low, high = self._errors(machine)
+            i = jnp.argmax(rising)
+            k_i = self.kernel(machine.s[i], machine.s)
+            curvature = jnp.maximum(2 - 2 * k_i, 1e-6)
+            gap = jnp.where(jnp.isfinite(falling), rising[i] - falling, -jnp.inf)
+            j = jnp.argmax(jnp.where(gap > 0, gap**2 / curvature, -jnp.inf))
+            step = jnp.minimum(gap[j] / curvature[j], high[i] - machine.dual[i])
+            step = jnp.minimum(step, machine.dual[j] - low[j])
+            step = jnp.where(jnp.isfinite(rising[i]) & (gap[j] > 0), step, 0.0)
+            k_j = self.kernel(machine.s[j], machine.s)
+            return machine._replace(
+                dual=machine.dual.at[i].add(step).at[j].add(-step),
+                output=machine.output + step * (k_i - k_j),
+            )
+
+        return jax.lax.fori_loop(0, self.iterations, one, machine)
+
+    def kernel(self, s: Array, points: Array) -> Array:
+        """k [N] of s [d] with points [N, d]."""
+        return jnp.exp(-0.5 * jnp.sum((points - s[None]) ** 2, -1) / self.length**2)
+
+    def _errors(self, machine: Machine) -> tuple[Array, Array, Array, Array]:
+        """E [C] where v can rise, else -inf; where it can fall, else inf; least, greatest v [C]."""
+        bound = self.cost * machine.weight
+        low = jnp.where(machine.label < 0, -bound, 0.0)
+        high = jnp.where(machine.label > 0, bound, 0.0)
+        error = machine.label - machine.output
+        rising = jnp.where(machine.dual < high, error, -jnp.inf)
+        falling = jnp.where(machine.dual > low, error, jnp.inf)
+        return rising, falling, low, high
 
     def decision(self, state: Machine, s: Array) -> Array:
         """f(s) [], positive where the measurement is more likely 1."""
-        f = decision(state, s, self.length, self.cost)
+        rising, falling, _, _ = self._errors(state)
+        up, down = jnp.max(rising), jnp.min(falling)  # one of them is infinite with one label alone
+        up, down = jnp.where(jnp.isfinite(up), up, down), jnp.where(jnp.isfinite(down), down, up)
+        f = self.kernel(s, state.s) @ state.dual + (up + down) / 2
         return jnp.where(state.count > 0, f, -1.0)
 
     def predict(self, state: Machine, s: Array) -> tuple[Array, Array]:
@@ -199,9 +172,14 @@ class SupportVectors:
         return jnp.any(state.label > 0)
 
     def report(self, state: Machine) -> dict[str, Array]:
-        """The number of points, whether the memory is full, the gap of optimality."""
+        """The number of points, whether the memory is full, the gap of optimality.
+
+        It is max E where v can rise less min E where it can fall: 0 where the duals are optimal.
+        """
+        rising, falling, _, _ = self._errors(state)
+        gap = jnp.max(rising) - jnp.min(falling)
         return {
             "belief/points": state.count.astype(jnp.float32),
             "belief/full": (state.count >= self.capacity).astype(jnp.float32),
-            "belief/gap": gap(state, self.cost),
+            "belief/gap": jnp.where(jnp.isfinite(gap), jnp.maximum(gap, 0.0), 0.0),
         }

@@ -14,13 +14,14 @@ s [r] regressor, y [a] output. Source: the QR decomposition of a triangle on top
 pseudo-inverse.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core.solving import solve_upper
+from hybrid_rl.protocols import LinearModel
 
 
 class Factor(NamedTuple):
@@ -78,6 +79,16 @@ def fold(factor: Factor, inputs: Array, outputs: Array) -> Factor:
 
     top, _ = jax.lax.fori_loop(0, size, reflect, (top, rows))
     return Factor(jnp.triu(top[:, :size]), top[:, size:])
+
+
+def rows(model: LinearModel, params: Any, made: Any) -> tuple[Array, Array]:
+    """Regressors s [B, r] and changes x' - x [B, n] of B decisions, a Transition or Batch."""
+
+    def one(obs: Array, u: Array, next_obs: Array) -> tuple[Array, Array]:
+        x = model.lift(params, obs)
+        return model.regressors(params, x, u), model.lift(params, next_obs) - x
+
+    return jax.vmap(one)(*map(jnp.asarray, (made.obs, made.action, made.next_obs)))
 
 
 def solve(factor: Factor) -> tuple[Array, Array]:

@@ -59,6 +59,11 @@ def update(
     return now.replace(min_std=FLOOR * (now.magnitude if magnitude is None else magnitude))
 
 
+def observed(params: dict[str, Any], x: Array, name: str = "state") -> dict[str, Any]:
+    """`params` with x [B, d] in the running statistics `name`, if it has these."""
+    return {**params, name: update(params[name], x)} if name in params else params
+
+
 def soft_target_update(old: Any, new: Any, tau: float) -> Any:
     """Target parameters: (1 - tau) old + tau new, with the statistics of `new`.
 
@@ -76,6 +81,11 @@ def normalise(stats: Running, x: Array) -> Array:
     """(x - mean) / scale for x [..., d]."""
     mean, scale = (jnp.broadcast_to(part, x.shape) for part in (stats.mean, stats.scale))
     return (x - mean) / scale
+
+
+def inputs(params: dict[str, Any], x: Array) -> Array:
+    """x [..., d] normalised by the statistics `state` in params, if it has these."""
+    return normalise(jax.lax.stop_gradient(params["state"]), x) if "state" in params else x
 
 
 def denormalise(stats: Running, x: Array) -> Array:

@@ -50,17 +50,13 @@ class EnsembleQ:
 
     def observe(self, params: dict[str, Any], x: Array, returns: Array) -> dict[str, Any]:
         """Parameters with statistics updated by states x [B, n] and reward / (1 - discount) [B]."""
-        if self.normalise:
-            params = {**params, "state": statistics.update(params["state"], x)}
-        if self.scale:
-            params = {**params, "value": statistics.update(params["value"], returns[:, None])}
-        return params
+        params = statistics.observed(params, x)
+        return statistics.observed(params, returns[:, None], "value")
 
     def all(self, params: dict[str, Any], x: Array, u: Array) -> Array:
         """Q of every member [members, ...] at x [..., n] and u [..., m]."""
-        if self.normalise:
-            x = statistics.normalise(jax.lax.stop_gradient(params["state"]), x)
-        q = ensemble_apply(self._net(), params["weights"], jnp.concatenate([x, u], -1))[..., 0]
+        xu = jnp.concatenate([statistics.inputs(params, x), u], -1)
+        q = ensemble_apply(self._net(), params["weights"], xu)[..., 0]
         return q * jax.lax.stop_gradient(params["value"].magnitude[0]) if self.scale else q
 
     def value(self, params: dict[str, Any], x: Array, u: Array) -> Array:

@@ -180,12 +180,6 @@ def _recalled(
     return now._replace(obs=s, next_obs=after)
 
 
-def as_batch(new: Transition) -> Batch:
-    """Transitions [B, ...] as a batch without next actions."""
-    terminated, truncated = (f.astype(jnp.float32) for f in (new.terminated, new.truncated))
-    return Batch(new.obs, new.action, new.reward, terminated, truncated, new.next_obs)
-
-
 def _packed(new: Transition) -> Array:
     """The rows [B, width] of transitions [B, ...]."""
     flags = [v.astype(jnp.float32)[:, None] for v in new[2:5]]

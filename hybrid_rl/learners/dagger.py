@@ -80,31 +80,6 @@ class Answer(NamedTuple):
     action: Array  # [T, m]
 
 
-def answer(
-    teacher: Controller,
-    model: Model | None,
-    params: Params,
-    rest: Any,
-    obs: Array,
-    length: int,
-    key: Array,
-) -> Answer:
-    """`length` decisions of `teacher` from obs [o] and its state `rest`; paths follow `model`.
-
-    The observation is the first part of the model's planning state. The key is consumed.
-    """
-
-    def decide(carry: tuple[Array, Any], key: Array) -> tuple[tuple[Array, Any], Answer]:
-        x, held = carry
-        u, held, _ = teacher.act(params, held, x, key)
-        after = x
-        if model is not None and length > 1:
-            after = model.step(params.model, model.lift(params.model, x), u)[: x.size]
-        return (after, held), Answer(x, u)
-
-    return jax.lax.scan(decide, (obs, rest), jax.random.split(key, length))[1]
-
-
 @struct.dataclass
 class DAggerState:
     """The clone, the labels, and a record of queries: query i is in row i mod Q."""
@@ -270,7 +245,7 @@ class DAgger:
         """What is to be large [] at x [o]: the target, or for an oracle the clone's error."""
         if self.target is not None:
             return self.target.log_density(params, x)
-        u = answer(self._teacher, None, params, state.rest, x, 1, key).action[0]
+        u = self._path(params, state.rest, x, 1, key).action[0]
         return jnp.sum((self.policy.mean(state.policy, x) - u) ** 2)
 
     def _due(self, state: DAggerState, value: Array) -> Array:
@@ -286,8 +261,25 @@ class DAgger:
         """`asked` with the teacher's answer if it is due."""
         due, none = asked
         params, rest, x, key = argument
-        new = answer(self._teacher, self.model, params, rest, x, self.length, key)
+        new = self._path(params, rest, x, self.length, key)
         return due, jax.tree.map(lambda new, none: jnp.where(due, new, none), new, none)
+
+    def _path(self, params: Params, rest: Any, obs: Array, length: int, key: Array) -> Answer:
+        """`length` decisions of the teacher from obs [o] and its state `rest`, along the model.
+
+        The observation is the first part of the model's planning state. The key is consumed.
+        """
+
+        def decide(carry: tuple[Array, Any], key: Array) -> tuple[tuple[Array, Any], Answer]:
+            x, held = carry
+            u, held, _ = self._teacher.act(params, held, x, key)
+            after = x
+            if length > 1:
+                assert self.model is not None  # as __post_init__ has checked
+                after = self.model.step(params.model, self.model.lift(params.model, x), u)[: x.size]
+            return (after, held), Answer(x, u)
+
+        return jax.lax.scan(decide, (obs, rest), jax.random.split(key, length))[1]
 
     def fit(self, state: DAggerState, steps: Array | int, key: Array) -> DAggerState:
         """The state after `steps` [] Adam steps on the labels, none if there are no labels."""

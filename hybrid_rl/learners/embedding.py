@@ -192,14 +192,10 @@ class EmbeddingLearner:
     def regress(self, model: dict[str, Any], memory: Decisions, stored: Array) -> dict[str, Any]:
         """The model with its spread, and K if it is to be fitted, from `stored` [] decisions."""
 
-        def one(obs: Array, u: Array, next_obs: Array) -> tuple[Array, Array]:
-            x = self.model.lift(model, obs)
-            return self.model.regressors(model, x, u), self.model.lift(model, next_obs) - x
-
         def add(i: Array, factor: least_squares.Factor) -> least_squares.Factor:
             slots = i * CHUNK + jnp.arange(CHUNK)
             part = jax.tree.map(lambda ring: ring[slots % len(ring)], memory)
-            s, change = jax.vmap(one)(part.obs, part.action, part.next_obs)
+            s, change = least_squares.rows(self.model, model, part)
             known = (slots < stored)[:, None]
             return least_squares.fold(factor, s * known, change * known)
 

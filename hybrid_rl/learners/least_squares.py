@@ -56,20 +56,9 @@ class LeastSquares:
         mean = mean + self.deviation * spec.dt * jax.random.normal(of_mean, (n, r))
         state = RegressionState(least_squares.begin(mean, self.prior), mean, model)
         if self.demonstrations is not None:
-            decisions = self.demonstrations.load()
-            rows = self._rows(model, decisions.obs, decisions.action, decisions.next_obs)
+            rows = least_squares.rows(self.model, model, self.demonstrations.load())
             state = state.replace(factor=least_squares.fold(state.factor, *rows))
         return self._solved(state)
-
-    def _rows(self, model: Any, obs: Any, action: Any, next_obs: Any) -> tuple[Array, Array]:
-        """Regressors [B, r] and changes x' - [I 0] s [B, n] of B decisions."""
-
-        def one(obs: Array, u: Array, next_obs: Array) -> tuple[Array, Array]:
-            x = self.model.lift(model, obs)
-            change = self.model.lift(model, next_obs) - x
-            return self.model.regressors(model, x, u), change
-
-        return jax.vmap(one)(*map(jnp.asarray, (obs, action, next_obs)))
 
     def _solved(self, state: RegressionState) -> RegressionState:
         """The state with K and its spread from the factor."""
@@ -85,7 +74,7 @@ class LeastSquares:
         self, state: RegressionState, params: Params, batch: Batch, key: Array
     ) -> tuple[RegressionState, dict[str, Array]]:
         """One regression step with B decisions; the loss is the squared error before it."""
-        s, change = self._rows(state.model, batch.obs, batch.action, batch.next_obs)
+        s, change = least_squares.rows(self.model, state.model, batch)
         x, predicted = s[:, : change.shape[1]], s @ state.model["K"].T
         metrics = {"model/loss": jnp.mean((x + change - predicted) ** 2)}
         factor = least_squares.add(state.factor, s, change, state.mean, self.prior, self.forgetting)

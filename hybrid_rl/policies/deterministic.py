@@ -56,9 +56,7 @@ class Deterministic:
 
     def observe(self, params: dict[str, Any], x: Array) -> dict[str, Any]:
         """Parameters with statistics updated by states x [B, n]."""
-        if not self.normalise:
-            return params
-        return {**params, "state": statistics.update(params["state"], x)}
+        return statistics.observed(params, x)
 
     def unsquashed(self, params: dict[str, Any], x: Array) -> Array:
         """mu [..., m] at x [..., n]."""
@@ -66,8 +64,7 @@ class Deterministic:
 
     def layers(self, params: dict[str, Any], x: Array) -> tuple[Array, Array]:
         """The features [..., h] of which mu [..., m] is an affine function, and mu."""
-        if self.normalise:
-            x = statistics.normalise(jax.lax.stop_gradient(params["state"]), x)
+        x = statistics.inputs(params, x)
         weights = params["weights"]
         last = weights[f"Dense_{len(self.hidden)}"]
         if self.hidden:

@@ -55,14 +55,11 @@ class TanhGaussian(Squashed):
 
     def observe(self, params: dict[str, Any], x: Array) -> dict[str, Any]:
         """Parameters with statistics updated by states x [B, n]."""
-        if not self.normalise:
-            return params
-        return {**params, "state": statistics.update(params["state"], x)}
+        return statistics.observed(params, x)
 
     def gaussian(self, params: dict[str, Any], x: Array) -> tuple[Array, Array]:
         """The mean mu and standard deviation sigma [..., m] before tanh, at x [..., n]."""
-        if self.normalise:
-            x = statistics.normalise(jax.lax.stop_gradient(params["state"]), x)
+        x = statistics.inputs(params, x)
         if self.log_std_activation is None:
             both = apply(self._net(outputs(params["trunk"])), params["trunk"], x)
             mu, log_std = jnp.split(both, 2, axis=-1)

@@ -62,15 +62,11 @@ class RewardNetwork:
 
     def observe(self, params: dict[str, Any], x: Array) -> dict[str, Any]:
         """Parameters with statistics updated by x [B, n]."""
-        if not self.normalise:
-            return params
-        return {**params, "state": statistics.update(params["state"], x)}
+        return statistics.observed(params, x) if self.normalise else params
 
     def observe_targets(self, params: dict[str, Any], target: Array) -> dict[str, Any]:
         """Parameters with statistics updated by targets [B] of the reward."""
-        if not self.scale:
-            return params
-        return {**params, "target": statistics.update(params["target"], target[:, None])}
+        return statistics.observed(params, target[:, None], "target")
 
     def outcome(self, params: Params, x: Array, u: Array, after: Array) -> tuple[Array, Array]:
         """The reward [] of u [m] at x [n], and the logit [] of the episode ending there.

@@ -12,7 +12,7 @@ from jax import Array
 from hybrid_rl.core import history
 from hybrid_rl.core.batching import repeat, where
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
-from hybrid_rl.data.replay import Memory, Replay, as_batch
+from hybrid_rl.data.replay import Memory, Replay
 from hybrid_rl.fields import LARGEST, Count, Natural, part
 from hybrid_rl.protocols import Controller, Learner, Model
 from hybrid_rl.training import contract
@@ -165,7 +165,7 @@ class Agent:
     def _batch(self, memory: Memory, learner: Learner, params: Params, key: Array) -> Batch:
         """The batch of one update. The key is consumed by that of a `uniform` learner."""
         if learner.data == "latest":
-            return as_batch(self.replay.newest(memory, self.spec, self.episode.history))
+            return Batch(*self.replay.newest(memory, self.spec, self.episode.history))
         size = learner.batches * learner.batch_size
         batch = self.replay.sample(memory, self.spec, size, key, self.episode.history)
         return lifted_batch(self._lifting(learner), params.model, batch)

@@ -4,7 +4,6 @@ import json
 
 import numpy as np
 import pytest
-from scipy.stats import trim_mean
 from tiny import write_run
 
 from hybrid_rl.analysis.curves import area, band, curves, improvement, iqm
@@ -217,12 +216,6 @@ def test_runs_are_found_by_glob_by_folder_and_by_list(tmp_path):
         find(f"{tmp_path}/b,none/*")
 
 
-@pytest.mark.parametrize("n", [4, 8, 20])
-def test_iqm_is_the_trimmed_mean_where_quarters_are_whole(n):
-    values = np.random.default_rng(0).normal(size=(n, 3))
-    np.testing.assert_allclose(iqm(values), trim_mean(values, 0.25, axis=0), rtol=1e-12)
-
-
 @pytest.mark.parametrize(
     ("values", "expected"),
     [
@@ -230,6 +223,7 @@ def test_iqm_is_the_trimmed_mean_where_quarters_are_whole(n):
         ([1, 2], 1.5),
         ([0, 1, 5], (0.25 * 0 + 1 + 0.25 * 5) / 1.5),
         ([100, 2, 1, 3, -100], (0.75 * 1 + 2 + 0.75 * 3) / 2.5),
+        ([4, 1, -9, 100], 2.5),
         ([8, 1, 2, 3, 4, 100], (0.5 * 2 + 3 + 4 + 0.5 * 8) / 3),
     ],
 )

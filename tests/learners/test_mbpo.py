@@ -20,21 +20,12 @@ B = 10
 class Counting:
     """x' = x + 1 for any action; reward x; the episode ends above 2.5; the policy acts by -x."""
 
-    def init(self, key: Array, spec: Spec) -> None:
-        """Nothing."""
-
-    def lift(self, params: Any, obs: Array) -> Array:
-        return obs
-
     def draw(self, params: Any, x: Array, u: Array, noise: Array, key: Array) -> Array:
         return x + 1
 
     def outcome(self, params: Any, x: Array, u: Array, after: Array) -> tuple[Array, Array]:
         """Reward and logit of the end."""
         return x[0], jnp.where(x[0] > 2.5, 20.0, -20.0)
-
-    def mean(self, params: Any, x: Array) -> Array:
-        return -x[:1]
 
     def sample(self, params: Any, x: Array, noise: Array) -> tuple[Array, Array]:
         return -x[:1], jnp.zeros(())

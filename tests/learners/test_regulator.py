@@ -3,6 +3,7 @@
 import jax
 import jax.numpy as jnp
 import numpy as np
+import pytest
 from scipy.linalg import solve_discrete_are
 
 from hybrid_rl.envs.analytic.pendulum import Pendulum
@@ -37,22 +38,6 @@ def lqr(A, B, Q, R):
     return np.linalg.solve(R + B.T @ P @ B, B.T @ P @ A)
 
 
-def test_the_regulator_of_a_known_system_is_scipys() -> None:
-    """The point mass, in coordinates of the observation: gain, goal and feed-forward."""
-    world = PointMass()
-    with jax.enable_x64(True):
-        A, B = linearised(world.dynamics, *world.equilibrium())
-        weights = (3.0, 2.0, 1.0, 1.0), (0.5,)
-        learner = RegulatorLearner(Koopman(Monomials()), Linear(), world, *weights, horizon=4096)
-        zero = Linear().init(jax.random.key(0), world.spec)
-        zero = jax.tree.map(lambda x: x.astype(float), zero)
-        solved = jax.jit(learner.solve)(linear_params(A, B), zero)
-    F = lqr(A, B, np.diag(weights[0]), 0.5 * np.eye(2))
-    np.testing.assert_allclose(solved["gain"], F, rtol=1e-6)
-    np.testing.assert_allclose(solved["goal"], world.equilibrium()[0])
-    np.testing.assert_allclose(solved["hold"], 0, atol=1e-6)
-
-
 def test_feed_forward_holds_a_goal_that_needs_an_action() -> None:
     """A linear system with a drift, whose hold is B^-1 (I - A) goal."""
     A, B = np.array([[0.9, 0.1], [0.0, 0.8]]), np.array([[0.0], [0.4]])
@@ -67,18 +52,20 @@ def test_feed_forward_holds_a_goal_that_needs_an_action() -> None:
     np.testing.assert_allclose(Linear().mean(aimed, goal), aimed["hold"])
 
 
-def test_any_model_with_derivatives_has_a_regulator() -> None:
-    """The exact model of the pendulum, upright: its gain over 200 decisions."""
-    world = Pendulum()
+@pytest.mark.parametrize("world", [Pendulum(), PointMass()])
+def test_any_model_with_derivatives_has_a_regulator(world) -> None:
+    """The exact one of the pendulum, upright, and of the point mass: gains over 200 decisions."""
     learner = RegulatorLearner(Exact(world), Linear(), world, (1.0,), (0.1,), horizon=200)
     state = learner.init(jax.random.key(0), world.spec)
     state, metrics = jax.jit(learner.update)(state, Params(), None, jax.random.key(0))
     A, B = linearised(world.dynamics, *world.equilibrium())
-    P, K = np.eye(3), np.zeros((1, 3))
+    P, K = np.eye(len(A)), np.zeros_like(B.T)
     for _ in range(200):
-        K = np.linalg.solve(0.1 * np.eye(1) + B.T @ P @ B, B.T @ P @ A)
-        P = np.eye(3) + A.T @ P @ (A - B @ K)
+        K = np.linalg.solve(0.1 * np.eye(len(K)) + B.T @ P @ B, B.T @ P @ A)
+        P = np.eye(len(A)) + A.T @ P @ (A - B @ K)
     np.testing.assert_allclose(state.policy["gain"], K, rtol=1e-3, atol=1e-4)
+    np.testing.assert_array_equal(state.policy["goal"], world.equilibrium()[0])
+    np.testing.assert_allclose(state.policy["hold"], 0, atol=1e-6)
     assert metrics["policy/rejected_solutions"] == 0
 
 

@@ -64,22 +64,18 @@ def test_every_member_has_its_own_batch(params) -> None:
 
 def test_members_draw_equally_many_states(params) -> None:
     """Each next state is one member's draw with its own noise; the key selects the member."""
-    model, count = Ensemble(ONE, members=4), 10
     x, u, noise = (
-        jax.random.normal(jax.random.key(i), (count, n)) for i, n in ((1, 3), (2, 2), (3, 3))
+        jax.random.normal(jax.random.key(i), (10, n)) for i, n in ((1, 3), (2, 2), (3, 3))
     )
-    alone, draw = jax.jit(ONE.draw), jax.jit(model.draw)
+    alone, draw = jax.jit(ONE.draw), jax.jit(MODEL.draw)
     each = np.stack([alone(member(params, i), x, u, noise, None) for i in range(4)])
     members = []
     for seed in range(20):
         got = np.asarray(draw(params, x, u, noise, jax.random.key(seed)))
-        assert got.shape == (count, 3)
-        apart = np.abs(each - got).max(-1)  # [4, count]
+        assert got.shape == (10, 3)
+        apart = np.abs(each - got).max(-1)  # [4, 10]
         assert (apart.min(0) < 1e-5).all()
         counts = np.bincount(apart.argmin(0), minlength=4)
         assert counts.max() <= 3
         members.append(apart.argmin(0))
     assert all(len(set(drawn)) == 4 for drawn in np.transpose(members))
-    std = np.exp(np.asarray(params["weights"]["log_std"][0]))
-    mean = alone(member(params, 0), x, u, 0 * noise, None)
-    np.testing.assert_allclose(each[0] - mean, std * np.asarray(noise), rtol=1e-3, atol=1e-5)

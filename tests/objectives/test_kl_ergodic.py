@@ -12,7 +12,7 @@ from scipy.stats import norm
 from hybrid_rl.core.domain import Box
 from hybrid_rl.core.ergodic import Points, divergence
 from hybrid_rl.objectives.fourier_ergodic import FourierErgodic
-from hybrid_rl.objectives.kl_ergodic import JensenErgodic, KLErgodic, KLState
+from hybrid_rl.objectives.kl_ergodic import JensenErgodic, KLErgodic
 from hybrid_rl.settings import build as config
 from hybrid_rl.targets.mixture import Mixture
 from hybrid_rl.training.rollout import rollout_with_actions
@@ -102,19 +102,6 @@ def test_leaving_the_box_has_its_price() -> None:
 
     costs = jax.jit(lambda: jnp.stack([value(n, 0.0) - value(n, 50.0) for n in EACH]))()
     np.testing.assert_allclose(costs, 50 * np.mean(((beyond / 2) ** 2).sum(-1)), rtol=1e-4)
-
-
-def test_a_memory_that_is_not_full_has_no_other_states() -> None:
-    """Two earlier states, in a memory of four and in one of two, into which they fit."""
-    path, past = Path(jnp.asarray(walk(6)), jnp.zeros((5, 1))), jnp.array(walk(2, seed=2)[:, :2])
-    points = Points(BOX.sample(50, jax.random.key(0)), jnp.full(50, -jnp.log(50.0)))
-
-    def value(memory: int) -> jax.Array:
-        held = KLState(jnp.zeros((memory, 2)).at[:2].set(past), jnp.float32(2))
-        return replace(KL, memory=memory).measure(points, held)(path)
-
-    wide, fitting = jax.jit(lambda: (value(4), value(2)))()
-    assert float(wide) == pytest.approx(float(fitting), rel=1e-5)
 
 
 @pytest.mark.parametrize("name", EACH)

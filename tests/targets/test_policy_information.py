@@ -42,12 +42,6 @@ def known(evidence: np.ndarray) -> Queried:
     return Queried(empty(1, 4, 2), jnp.ones(4), jnp.asarray(evidence, jnp.float32))
 
 
-def test_the_trace_of_a_linear_policy_is_that_of_its_regressors() -> None:
-    """tr I(x) = m (|x|^2 + 1) / sigma^2."""
-    target, params = made((), "trace")
-    np.testing.assert_allclose(at(target, params, X), 2 * ((X**2).sum(1) + 1) / 0.25, rtol=1e-5)
-
-
 def test_the_trace_of_one_sine_layer_is_its_closed_form() -> None:
     """sum_i [sum_j sin^2 h_j + 1 + (|x|^2 + 1) sum_j W2_ij^2 cos^2 h_j] / sigma^2."""
     target, params = made((7,), "trace")

@@ -106,16 +106,6 @@ class Wide(Line):
         return super().step(params, x, u)[None]
 
 
-class Actless:
-    """Without act."""
-
-    def init(self, spec):
-        return ()
-
-    def greedy(self):
-        return self
-
-
 def check(planner: Any = Planner(), learner: Any = Fit()) -> None:
     learners = {"model": learner} if learner else {}
     hr.Agent(hr.Episode(Pendulum(), 20), planner, learners, Replay().within(9, 1)).check()
@@ -165,8 +155,8 @@ FAULTY = [  # a learner or a controller, the line after the file
     (Fit(wrong="longer"), "Fit.update: returned state[2] int32[], init gave nothing; both must"),
     (Fit(wrong="type"), "Fit.update: returned state[1] float32[], init gave int32[]; both must"),
     (Fit(Wide()), "Wide.step: returned x float32[1, 3], lift gave float32[3]; both must"),
-    (Fit(Actless()), "Actless has no lift, which Fit.model needs; see protocols.Model"),
-    (Actless(), "Actless has no act; see protocols.Controller"),
+    (Fit(Cost()), "Cost has no lift, which Fit.model needs; see protocols.Model"),
+    (Cost(), "Cost has no act; see protocols.Controller"),
     (SamplingController, "SamplingController is a class; give SamplingController()"),
     (Planner(wrong="line"), "Planner.act: TypeError: add got incompatible shapes for broadcasting"),
     (Planner(wrong="many"), "Planner.act: returned action float32[2]; it must be float32[1]"),
