@@ -57,7 +57,11 @@ CHECKS: dict[str, Callable[[Evidence], str | None]] = {  # in the order of that 
 
 def examine(folder: Path | str) -> dict[str, str]:
     """Name of a check -> its line, for those of CHECKS that have found something."""
-    run = read(Path(folder))
+    return _found(read(Path(folder)))
+
+
+def _found(run: Evidence) -> dict[str, str]:
+    """As `examine`."""
     found = {name: check(run) for name, check in CHECKS.items()}
     return {name: line for name, line in found.items() if line}
 
@@ -65,8 +69,9 @@ def examine(folder: Path | str) -> dict[str, str]:
 def main() -> None:
     """The command."""
     folder = Path(arguments.read(__doc__, ARGUMENTS)[0]["run"])
+    run = read(folder)
     print(f"{folder}: {len(CHECKS)} checks, some by new episodes", file=sys.stderr, flush=True)
-    found = examine(folder)
+    found = _found(run)
     width = max(map(len, found), default=0)
     for name, line in found.items():
         print(f"{name:{width}}  {line}")
