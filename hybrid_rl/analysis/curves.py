@@ -147,7 +147,7 @@ def area(curve: Curve, since: float = -np.inf, until: float = np.inf) -> np.ndar
     """[S] mean of each learner's metric: the area under its curve over its width.
 
     Between the first and the last point that all learners have, or from x = `since` to x = `until`
-    within them; NaN if there is none.
+    within them; NaN if no point is left.
     """
     x, each = curve.x[curve.shared], curve.each[:, curve.shared]
     if not len(x) or max(x[0], since) > min(x[-1], until):

@@ -10,7 +10,7 @@ it predicts from its own errors returns to the states that exist, where an entry
 (a sine and a cosine), instead of drifting away (Sanchez-Gonzalez et al. 2020, "Learning to simulate
 complex physics with graph networks"). Noise that x does not reveal enlarges s: c is well below 1.
 
-With `circles` it finds the pairs that do so, and what it predicts stays on them (`core.circles`).
+With `circles` what it predicts stays on the circles that pairs of entries lie on (`core.circles`).
 """
 
 from typing import Annotated, Any, ClassVar

@@ -93,9 +93,9 @@ def chosen(hydra: Any, group: str) -> Path | None:
 
 
 def adopt_planner(config: DictConfig, hydra: Any) -> None:
-    """Let a planner act of whose fields alone the user's file consists, in place of the method's.
+    """Let the planner of the user's file act, with its keys alone; a global file does so itself.
 
-    Those of this package spread over the configuration. Arguments as of `complete_names`.
+    config, hydra: as of `complete_names`.
     """
     file = chosen(hydra, "planner")
     if file is None or GLOBAL in file.read_text(encoding="utf-8")[:100]:

@@ -95,12 +95,11 @@ def _band(x: bytes) -> tuple[float, float, float]:
 
 
 def area(line: dict[str, Any], end: float | None = None) -> np.ndarray:
-    """[S] mean of each seed's line up to `end`; the first value is taken to hold from 0 on."""
+    """[S] mean of each seed's line from its first x on, up to `end`."""
     x, each = np.array(line["x"]), np.array(line["each"])
     included = x <= (x[-1] if end is None else end)
-    x = np.append(0.0, x[included])
-    y = np.concatenate([each[:, :1], each[:, included]], axis=1)
-    return np.trapezoid(y, x, axis=1) / x[-1]
+    x, each = x[included], each[:, included]
+    return np.trapezoid(each, x, axis=1) / (x[-1] - x[0]) if len(x) > 1 else each[:, 0]
 
 
 def ahead(x: Any, y: Any) -> list[float]:

@@ -61,7 +61,7 @@ def examine(folder: Path | str) -> dict[str, str]:
 
 
 def _found(run: Evidence) -> dict[str, str]:
-    """As `examine`."""
+    """Name of a check -> its line, as `examine` gives them."""
     found = {name: check(run) for name, check in CHECKS.items()}
     return {name: line for name, line in found.items() if line}
 
