@@ -60,16 +60,14 @@ class Gaussian:
         }
         if self.circles:
             params["circles"] = circles.init(new)
-        return params if new == spec.obs else {**params, "dt": jnp.float32(spec.dt)}
+        return params if new == spec.obs else {**params, "period": jnp.float32(spec.dt)}
 
     def observe(self, params: dict[str, Any], obs: Array, next_obs: Array) -> dict[str, Any]:
         """Parameters with statistics updated by observations [B, o] and their successors."""
         if not self.normalise:
             return params
-        state = statistics.update(params["state"], obs)
-        before = self._onward(params, obs)
-        new = before.shape[1]
-        change = next_obs[:, :new] - before
+        state, new = statistics.update(params["state"], obs), params["change"].mean.size
+        change = next_obs[:, :new] - obs[:, :new]
         change = statistics.update(params["change"], change, state.magnitude[:new])
         params = {**params, "state": state, "change": change}
         if self.circles:
@@ -81,10 +79,7 @@ class Gaussian:
         return obs
 
     def change(self, params: dict[str, Any], x: Array, u: Array) -> Array:
-        """Predicted change [n] of x [n] under u [m], in running standard deviations.
-
-        After a history it is what the next observation is beyond o + v dt.
-        """
+        """Predicted change [n] of x [n] under u [m], in running standard deviations."""
         inputs = jnp.concatenate([self._inputs(statistics.normalise(params["state"], x)), u])
         new = params["change"].mean.size
         return apply(self._net(new), params["weights"]["net"], inputs)
@@ -113,14 +108,9 @@ class Gaussian:
 
     def _after(self, params: dict[str, Any], x: Array, u: Array, change: Array) -> Array:
         """The state [n] after x [n] by a `change`; what is older in a history only shifts."""
-        new = self._onward(params, x) + statistics.denormalise(params["change"], change)
+        new = x[: change.size] + statistics.denormalise(params["change"], change)
         new = circles.onto(params["circles"], new) if self.circles else new
-        return history.shifted(x, u, new, params["dt"]) if "dt" in params else new
-
-    def _onward(self, params: dict[str, Any], x: Array) -> Array:
-        """The next observation [...] without a change at x [..., n]; after a history o + v dt."""
-        new = params["change"].mean.size
-        return x[..., :new] + params["dt"] * x[..., new : 2 * new] if "dt" in params else x
+        return history.shifted(x, u, new, params["period"]) if "period" in params else new
 
     def _inputs(self, x: Array) -> Array:
         return x if self.inputs is None else x[jnp.array(self.inputs)]
@@ -139,8 +129,7 @@ class Gaussian:
             if self.input_noise:
                 noise = self.input_noise * params["change"].scale * std * noise
                 x = x.at[: std.size].add(jax.lax.stop_gradient(noise))
-            change = next_x[: std.size] - self._onward(params, x)
-            target = statistics.normalise(params["change"], change)
+            target = statistics.normalise(params["change"], next_x[: std.size] - x[: std.size])
             error = (target - self.change(params, x, u)) / std
             return jnp.mean(0.5 * error**2 + jnp.log(std) + 0.5 * jnp.log(2 * jnp.pi))
 

@@ -70,7 +70,7 @@ class Recurrent:
 
     def lift(self, params: dict[str, Any], obs: Array) -> Array:
         """x [n] after a history [s]."""
-        o, dt = params["change"].mean.size, params["dt"]
+        o, dt = params["change"].mean.size, params["period"]
         rows = obs[o:].reshape(self.history - 1, -1)  # v and u before it, newest first
         newer = partial(jnp.matmul, jnp.tri(len(rows), k=-1), precision="highest")  # their sums
         rows = jnp.concatenate((obs[None, :o] - dt * newer(rows[:, :o]), rows), 1)

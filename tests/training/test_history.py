@@ -97,7 +97,8 @@ def test_models_learn_the_newest_observation_and_shift_the_rest(input_noise):
     drawn = model.draw(params, x[None], u[None], noise[None], KEY)[0]
     for then in (model.step(params, x, u), *model.predictions(params, x, u)[2], drawn):
         close(then[2:], np.concatenate(((then[:2] - x[:2]) / 0.1, u, x[2:5])))
-    assert params["change"].mean.size == model.disagreement(params, x, u).size == 2
+    close(params["change"].mean, (2 * after - 1.5 * x)[:2])  # of the newest observation alone
+    assert model.disagreement(params, x, u).size == 2
     each = [(x[None], u[None], after[None].at[0, i].add(1.0)) for i in (0, 1, 2, 7)]
     losses = [
         model.loss(params, *(jnp.tile(row, (2, 1)) for row in rows), KEY)
