@@ -161,11 +161,6 @@ def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
 def build(config: DictConfig) -> Run:
     """The parts that `config` names, with room in the memory for what another run gave."""
     check(config)
-    return built(config)
-
-
-def built(config: DictConfig) -> Run:
-    """As `build`, of a configuration that `check` has passed."""
     rounds = -(-config.total_steps // config.num_envs)
     remembered = config.get("begun", {}).get("remembered", 0)  # decisions of each environment
     whole("replay.capacity", config.replay.capacity)
