@@ -27,7 +27,7 @@ from jax import Array
 from hybrid_rl.core.batching import where
 from hybrid_rl.envs.adapters.external import Copies, External, Outcome
 from hybrid_rl.outside.acting import NONE, Acting
-from hybrid_rl.outside.sending import mailbox, send
+from hybrid_rl.outside.sending import Mailbox, send
 from hybrid_rl.protocols import Controller
 from hybrid_rl.training.agent import AgentState
 from hybrid_rl.training.episode import Episode
@@ -158,7 +158,7 @@ class HostProgram:
         rows = jax.tree.map(lambda row: np.zeros(row.shape, row.dtype), loop.rows)
         got = jax.tree.map(np.array, outcome_like(state.env))  # the state itself is donated
         u = np.zeros((*each, loop.agent.spec.act), np.float32)
-        with mailbox(loop.mesh.size) as sent:
+        with Mailbox(loop.mesh.size) as sent:
             for i in range(int(rounds)):
                 at = np.array([i, first + i * envs, made, sent.ticket], np.int32)
                 state, rows = self.act(state, rows, u, got, at)
