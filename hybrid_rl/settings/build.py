@@ -20,7 +20,7 @@ from hybrid_rl.errors import PartError, UsageError
 from hybrid_rl.fields import FieldError
 from hybrid_rl.files.targets import build as build_part
 from hybrid_rl.protocols import Controller
-from hybrid_rl.settings.complete import LACKING, complete, refusal, select
+from hybrid_rl.settings.complete import complete, require
 from hybrid_rl.settings.compose import (
     UNCOMPOSED,
     adopt_planner,
@@ -127,8 +127,7 @@ def read(config: DictConfig) -> DictConfig:
     # a part that lacks a key of `settings` keeps what it has
     raw = complete(raw, (*READ, "sweep"), [*typed, *settings_keys(hydra)])
     for path in typed:
-        if select(raw, path) is LACKING:
-            raise UsageError(refusal(path, raw, hydra.runtime.choices.get(path)))
+        require(raw, path, hydra.runtime.choices.get(path))
     sources = (each.path for each in hydra.runtime.config_sources if each.schema == "file")
     mine = [path for path in sources if Path(path) != CONF]
     raw["config_dir"] = mine[0] if mine else None  # of the user's files
