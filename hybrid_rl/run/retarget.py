@@ -186,7 +186,7 @@ def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
     for name in configuration.PAID:
         goal[name] = goal[name] or config.get(name)
     for planner in (goal[name] for name in PLANNERS if "priced" in goal[name]):
-        planner.priced = own and _priced(config, goal.constraint)
+        planner.priced = own and _priced(config, plain(goal)["constraint"])
     if "proposal" in config or "policy" not in config:
         del goal.proposal
     if not {"model", "reward_model"} <= {*config}:
@@ -198,13 +198,11 @@ def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
     return goal
 
 
-def _priced(config: dict[Any, Any], limit: Any) -> bool:
+def _priced(config: dict[Any, Any], limit: dict[Any, Any] | None) -> bool:
     """True if the reward of a run was learned with the price of this limit.
 
     That price stays, also if `constraint.price` is another one now.
     """
-    if isinstance(limit, DictConfig):
-        limit = OmegaConf.to_container(limit)  # it refers to a world
     before, now = (
         {key: value for key, value in (each or {}).items() if key not in SOFT}
         for each in (config.get("constraint"), limit)

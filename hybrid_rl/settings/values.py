@@ -5,7 +5,7 @@ from collections.abc import Collection, Mapping
 from numbers import Integral
 from typing import Any
 
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig
 
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.adapters.robot import Robot
@@ -16,6 +16,7 @@ from hybrid_rl.fields import as_yaml
 from hybrid_rl.files import targets as parts
 from hybrid_rl.networks.precision import PRECISIONS
 from hybrid_rl.settings.groups import MODES
+from hybrid_rl.settings.words import plain
 from hybrid_rl.types import NAME
 
 COUNTS = (
@@ -36,7 +37,7 @@ def check(config: DictConfig) -> None:
         if not isinstance(config[key], DictConfig):
             hint = f"; did you mean task={config[key]}?" if key == "env" else ""
             raise UsageError(f"{key}={as_yaml(config[key])}: must be a group of keys{hint}")
-    values = OmegaConf.to_container(config)
+    values = plain(config)
     parts.check(values)
     for key in ("task", "algo"):  # which become folders, or overrides
         if not NAME.fullmatch(str(config.get(key))):
