@@ -25,6 +25,7 @@ COUNTS = (
 )
 SECTIONS = ("env", "episode", "replay", "controllers", "learners")
 PAID = ("reward", "constraint")  # what the world pays and asks for; a run may lack the keys
+KNOWN = {"precision": PRECISIONS, "physics": IMPLEMENTATIONS, "logger": (None, "wandb")}
 TRUE_MODEL = "hybrid_rl.models.world.World"
 MARGIN = 3.0  # of branches with a history, in ranges of real states
 STEPS = 2**31  # decisions, fewer of which are counted
@@ -54,8 +55,8 @@ def check(config: DictConfig) -> None:
     whole("seed", config.seed, 0, SEEDS - config.num_seeds)
     for mode in [None] if config.eval_modes is None else config.eval_modes:
         one_of("eval_modes", mode, MODES)
-    for key, known in (("precision", PRECISIONS), ("physics", IMPLEMENTATIONS)):
-        one_of(key, config[key], known)
+    for key, known in KNOWN.items():
+        one_of(key, config.get(key), known)
 
 
 def time_limit(env: External | Robot, given: Mapping[str, Any]) -> dict[str, int]:
