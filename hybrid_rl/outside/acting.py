@@ -1,4 +1,4 @@
-"""Decisions outside of a compiled loop: from observations to actions."""
+"""Decisions outside of a compiled loop: actions at observations, and the states that follow."""
 
 import time
 from collections.abc import Callable, Mapping
@@ -16,7 +16,7 @@ from hybrid_rl.protocols import Controller
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.ahead import AheadState
 from hybrid_rl.training.history import HistoryState, informed
-from hybrid_rl.types import Params, Spec
+from hybrid_rl.types import Clock, EnvState, Params, Spec
 
 NONE: Mapping[str, Array] = MappingProxyType({})
 
@@ -179,6 +179,14 @@ class TrainedPolicy:
         self._begun = True
         u = self._acting(self._params, rows[None])[0].reshape(*values.shape[:-1], self.spec.act)
         return u if self._span is None else self._span[0] + self._span[1] * np.clip(u, -1, 1)
+
+
+def led(env: EnvState, obs: Array, reward: Array, terminated: Array, truncated: Array) -> EnvState:
+    """The states [E] after a decision at `env` [E], of which a world outside says the others."""
+    clock = Clock(env.clock.decision + 1, env.clock.total + reward)
+    return env.replace(
+        obs=obs, reward=reward, terminated=terminated, truncated=truncated, clock=clock
+    )
 
 
 def numbers(

@@ -26,14 +26,14 @@ from jax import Array
 
 from hybrid_rl.core.batching import where
 from hybrid_rl.envs.adapters.external import Copies, External, Outcome
-from hybrid_rl.outside.acting import NONE, Acting
+from hybrid_rl.outside.acting import NONE, Acting, led
 from hybrid_rl.outside.sending import Mailbox, send
 from hybrid_rl.protocols import Controller
 from hybrid_rl.training.agent import AgentState
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Axis, Loop, put
 from hybrid_rl.training.metrics import outcome
-from hybrid_rl.types import Clock, EnvState, Params, PyTree
+from hybrid_rl.types import EnvState, Params, PyTree
 
 RESUMED = "the environment begins a new episode, as its own state is in no checkpoint: the "
 RESUMED += "decisions after this one differ from those of a run without the interruption"
@@ -236,12 +236,6 @@ def seed_of(*numbers: int) -> int:
 
 def states(env: EnvState, got: Outcome) -> tuple[EnvState, EnvState]:
     """The states [E] after a decision at `env` [E]: the outcome, and what the next one sees."""
-    now = env.replace(
-        obs=got.obs,
-        reward=got.reward,
-        terminated=got.terminated,
-        truncated=got.truncated,
-        clock=Clock(env.clock.decision + 1, env.clock.total + got.reward),
-    )
+    now = led(env, got.obs, got.reward, got.terminated, got.truncated)
     first = jax.tree.map(jnp.zeros_like, now)
     return now, where(now.done, first, now).replace(obs=got.following)
