@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable, Mapping
+from functools import partial
 from types import MappingProxyType
 from typing import Any
 
@@ -16,6 +17,7 @@ from hybrid_rl.protocols import Controller
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.ahead import AheadState
 from hybrid_rl.training.history import HistoryState, informed
+from hybrid_rl.training.loop import Axis
 from hybrid_rl.types import Clock, EnvState, Params, Spec
 
 NONE: Mapping[str, Array] = MappingProxyType({})
@@ -25,7 +27,7 @@ class Acting:
     """u [S, N, m] = acting(params [S, ...], obs [S, N, o]) of S learners, in N worlds each.
 
     The controllers' states and the keys of their random numbers are kept from one decision to the
-    next. numbers: of a loop's axis by path [S]; of: maps one learner's numbers to its controller.
+    next. numbers: of a loop's axis by path [S]; mode: of the controller.
     """
 
     def __init__(
@@ -34,11 +36,11 @@ class Acting:
         controller: Controller,
         keys: Array,
         numbers: Mapping[str, Array] = NONE,
-        of: Callable[[Any], Controller] | None = None,
+        mode: str = "full",
     ) -> None:
         """keys: [S, N]."""
         (learners, worlds), self.spec, self._numbers = keys.shape, spec, dict(numbers)
-        own = (lambda numbers: controller) if of is None else of
+        own = partial(Axis().put, controller, f"controllers.{mode}")
         first = jax.vmap(lambda n: batching.repeat(own(n).init(spec), worlds), axis_size=learners)
 
         def decide(numbers: Any, params: Params, control: Any, obs: Array, keys: Array) -> tuple:
@@ -181,7 +183,9 @@ class TrainedPolicy:
         return u if self._span is None else self._span[0] + self._span[1] * np.clip(u, -1, 1)
 
 
-def led(env: EnvState, obs: Array, reward: Array, terminated: Array, truncated: Array) -> EnvState:
+def next_state(
+    env: EnvState, obs: Array, reward: Array, terminated: Array, truncated: Array
+) -> EnvState:
     """The states [E] after a decision at `env` [E], of which a world outside says the others."""
     clock = Clock(env.clock.decision + 1, env.clock.total + reward)
     return env.replace(

@@ -16,7 +16,6 @@ the end of a call.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from typing import Any
 
 import jax
@@ -26,12 +25,12 @@ from jax import Array
 
 from hybrid_rl.core.batching import where
 from hybrid_rl.envs.adapters.external import Copies, External, Outcome
-from hybrid_rl.outside.acting import NONE, Acting, led
+from hybrid_rl.outside.acting import NONE, Acting, next_state
 from hybrid_rl.outside.sending import Mailbox, send
 from hybrid_rl.protocols import Controller
 from hybrid_rl.training.agent import AgentState
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Axis, Loop, put
+from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Loop, put
 from hybrid_rl.training.metrics import outcome
 from hybrid_rl.types import EnvState, Params, PyTree
 
@@ -193,10 +192,9 @@ class HostEvaluator:
         mode: str = "full",
     ) -> None:
         """Compile one decision in all of them."""
-        axis, numbers = (Axis(), NONE) if loop is None else (loop.axis, loop.numbers)
-        of = partial(axis.put, controller, f"controllers.{mode}")
+        numbers = NONE if loop is None else loop.numbers
         self.episode = episode
-        self._acting = Acting(episode.spec, controller, keys, numbers, of)
+        self._acting = Acting(episode.spec, controller, keys, numbers, mode)
         self._acting.compile(params)
 
     def __call__(
@@ -236,6 +234,6 @@ def seed_of(*numbers: int) -> int:
 
 def states(env: EnvState, got: Outcome) -> tuple[EnvState, EnvState]:
     """The states [E] after a decision at `env` [E]: the outcome, and what the next one sees."""
-    now = led(env, got.obs, got.reward, got.terminated, got.truncated)
+    now = next_state(env, got.obs, got.reward, got.terminated, got.truncated)
     first = jax.tree.map(jnp.zeros_like, now)
     return now, where(now.done, first, now).replace(obs=got.following)

@@ -18,7 +18,7 @@ from jax import Array
 
 from hybrid_rl.data.replay import Memory
 from hybrid_rl.errors import UsageError
-from hybrid_rl.outside.acting import led
+from hybrid_rl.outside.acting import next_state
 from hybrid_rl.outside.lag import acted
 from hybrid_rl.outside.row_log import row_type
 from hybrid_rl.training.agent import AgentState
@@ -75,7 +75,7 @@ class RowLoop(Loop):
         """One learner after the updates of a decision, and what that one led to."""
         clock = jax.tree.map(lambda x: jnp.where(first, 0, x).astype(x.dtype), state.env.clock)
         before = state.env.replace(clock=clock)
-        now = led(before, made.next_obs, made.reward, made.terminated, made.truncated)
+        now = next_state(before, made.next_obs, made.reward, made.terminated, made.truncated)
         state, metrics = self.agent.learn(state.replace(env=now), step)
         return state, {**metrics, **outcome(made.action, now)}
 
