@@ -51,7 +51,7 @@ READ = (  # the keys that a run reads, and with them all keys that they refer to
     *("physics", "run_dir", "resume", "eval_modes", "checkpoint_replay", "compile_cache"),
     *("precision", "logger", "run", "freeze"),
 )
-register(CONF)  # before Hydra composes anything
+register()  # before Hydra composes anything
 OmegaConf.register_new_resolver("ratio", lambda a, b: a / b, replace=True)  # ${ratio:A,B}
 OmegaConf.register_new_resolver("pick", lambda key, of: of[key], replace=True)  # ${pick:A,{A: 1}}
 SENSED = "hybrid_rl.training.wrappers.Sensed"
@@ -129,8 +129,7 @@ def read(config: DictConfig) -> DictConfig:
     for path in typed:
         require(raw, path, hydra.runtime.choices.get(path))
     sources = (each.path for each in hydra.runtime.config_sources if each.schema == "file")
-    mine = [path for path in sources if Path(path) != CONF]
-    raw["config_dir"] = mine[0] if mine else None  # of the user's files
+    raw["config_dir"] = next((path for path in sources if Path(path) != CONF), None)  # the user's
     return OmegaConf.create(raw, flags={"struct": True})
 
 
