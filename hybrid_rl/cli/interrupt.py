@@ -62,7 +62,7 @@ def install() -> None:
 
 @contextmanager
 def as_exception(patience: float = PATIENCE) -> Iterator[None]:
-    """Within, a signal raises KeyboardInterrupt in the main thread of a command.
+    """Let a signal raise KeyboardInterrupt in the main thread of a command, within the block.
 
     patience: [s] for its clean-up, after which the process ends.
     """
@@ -75,7 +75,7 @@ def as_exception(patience: float = PATIENCE) -> Iterator[None]:
 
 @contextmanager
 def as_call(ask: Ask) -> Iterator[None]:
-    """Within, the first signal calls ask(number), in another thread than the main one.
+    """Let the first signal call ask(number), in another thread than the main one.
 
     Without `install` a second Ctrl-C raises KeyboardInterrupt.
     """

@@ -66,7 +66,7 @@ class HostLoop(Loop):
         return HostProgram(self, *map(self.compile_trace, self.trace(state)))
 
     def step(self, state: AgentState, step: Array) -> tuple[AgentState, dict[str, Array]]:
-        """As of `Loop`, in an environment where nothing changes: for the shapes."""
+        """A round of one learner where nothing changes in the environment, for the shapes."""
         u, state, planned = self._decide(state, step)
         state, led = self._observed(state, u, outcome_like(state.env), 1)
         state, learned = self._learn(state, step)
@@ -147,7 +147,7 @@ class HostProgram:
         self.copies: Copies | None = None  # made at the first call
 
     def __call__(self, state: AgentState, start: Array, rounds: Array) -> tuple[AgentState, Any]:
-        """As the program of `Loop`."""
+        """Train for some rounds, as the program of `Loop`."""
         loop, envs, first, made = self.loop, self.loop.agent.num_envs, int(start), False
         each = len(loop.seeds), envs
         if self.copies is None:

@@ -81,7 +81,7 @@ class RobotProgram:
         self.room: int | None = None  # rows that fit into the memory; None before the first call
 
     def __call__(self, state: AgentState, start: Array, rounds: Array) -> tuple[AgentState, Any]:
-        """As the program of `Loop`.
+        """Train for some rounds, as the program of `Loop`.
 
         If the robot's class is wrong, or the robot does not answer for long, it ends early, and the
         loop has the `fault`.

@@ -131,7 +131,7 @@ def read(folder: Path, key: str) -> DictConfig:
 
 
 def read_trained(folder: Path, key: str) -> DictConfig:
-    """As `read`; UsageError also of a run without a checkpoint."""
+    """The configuration of a run that has a checkpoint; UsageError otherwise, and as of `read`."""
     config = read(folder, key)
     if not checkpoint.steps(folder / "checkpoints"):
         raise UsageError(f"{key}={folder}: holds no checkpoint yet")

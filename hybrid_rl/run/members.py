@@ -135,7 +135,7 @@ def loop_of(
     folder: Path = Path(),
     axis: Axis | None = None,
 ) -> Loop:
-    """On the device; on the host where its environment is there; or on a robot.
+    """The loop that trains an agent: on the device, on the host, or on a robot.
 
     folder: of the run, in which the files of a robot are. axis: of `Loop`.
     """

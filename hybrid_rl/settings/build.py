@@ -1,4 +1,4 @@
-"""From overrides to parts: compose conf/, check it, build a run."""
+"""Make parts of overrides: compose conf/, check it, build a run."""
 
 import re
 from collections.abc import Callable, Iterator, Sequence

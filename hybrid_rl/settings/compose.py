@@ -1,4 +1,4 @@
-"""Around Hydra's composition (build.py): its errors in one line, a task or method of the user's."""
+"""What surrounds Hydra's composition (build.py): errors in one line, the user's tasks, methods."""
 
 import re
 from collections.abc import Sequence
