@@ -21,6 +21,7 @@ from hybrid_rl.training.loop import Axis
 from hybrid_rl.types import Clock, EnvState, Params, Spec
 
 NONE: Mapping[str, Array] = MappingProxyType({})
+Told = np.ndarray | Array  # by a world outside
 
 
 class Acting:
@@ -184,9 +185,9 @@ class TrainedPolicy:
 
 
 def next_state(
-    env: EnvState, obs: Array, reward: Array, terminated: Array, truncated: Array
+    env: EnvState, obs: Told, reward: Told, terminated: Told, truncated: Told
 ) -> EnvState:
-    """The states [E] after a decision at `env` [E], of which a world outside says the others."""
+    """The states [E] after a decision at `env` [E], of which a world outside tells the others."""
     clock = Clock(env.clock.decision + 1, env.clock.total + reward)
     return env.replace(
         obs=obs, reward=reward, terminated=terminated, truncated=truncated, clock=clock
