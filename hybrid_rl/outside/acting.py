@@ -76,14 +76,14 @@ class Acting:
 
 
 class Exploring:
-    """The decisions of one learner while it trains, in one world; at random for `random_steps`."""
+    """The decisions of one learner while it trains, in one world; the first ones at random."""
 
     params: Params | None = None  # [1, ...]; None: there are none yet
 
-    def __init__(self, agent: Agent, seed: int, random_steps: int) -> None:
+    def __init__(self, agent: Agent, seed: int) -> None:
         """Compile."""
         key = jax.random.fold_in(jax.random.key(seed), int(time.time()))
-        self._size, self._random_steps = agent.spec.act, random_steps
+        self._random_steps = agent.random_steps
         self._random = np.random.default_rng(np.asarray(jax.random.key_data(key)))
         self._acting = Acting(agent.spec, agent.controller, key[None, None])
         many = jax.vmap(jax.vmap(informed, (0, None, None)), (0, None, None))
@@ -91,7 +91,7 @@ class Exploring:
         self.like = jax.eval_shape(lambda: agent.params(agent.init(key)))  # of the parameters
         self.take(jax.tree.map(lambda leaf: np.zeros(leaf.shape, leaf.dtype), self.like))
         self._acting.compile(self._with(0))
-        self(np.zeros(agent.spec.obs), random_steps)  # the first call takes longer
+        self(np.zeros(agent.spec.obs), agent.random_steps)  # the first call takes longer
         self.begin()
         self.params = None
 
@@ -120,7 +120,7 @@ class Exploring:
     def __call__(self, obs: np.ndarray, decisions: int) -> np.ndarray:
         """The action [m] at `obs` [o], after so many decisions of the run."""
         if decisions < self._random_steps:
-            return self._random.uniform(-1, 1, self._size).astype(np.float32)
+            return self._random.uniform(-1, 1, self._acting.spec.act).astype(np.float32)
         return self._acting(self._with(decisions), np.array(obs, np.float32)[None, None])[0, 0]
 
     def _with(self, decisions: int) -> Params:
