@@ -26,8 +26,8 @@ from hybrid_rl.settings.compose import (
     adopt_planner,
     complete_names,
     explain,
-    keys_of,
     settings_keys,
+    typed_keys,
 )
 from hybrid_rl.settings.groups import CONF, groups, register, search_path
 from hybrid_rl.settings.values import (
@@ -40,7 +40,7 @@ from hybrid_rl.settings.values import (
     time_limit,
     whole,
 )
-from hybrid_rl.settings.words import forced, name, of_job, plain, typed_values
+from hybrid_rl.settings.words import forced, name, plain, typed_values
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.history import acting as acting_in
@@ -123,7 +123,7 @@ def read(config: DictConfig) -> DictConfig:
     complete_names(config, hydra)
     adopt_planner(config, hydra)
     raw = plain(config)
-    typed = keys_of(of_job(hydra), hydra) if raw["resume"] is None else []
+    typed = typed_keys(hydra) if raw["resume"] is None else []
     # a part that lacks a key of `settings` keeps what it has
     raw = complete(raw, (*READ, "sweep"), [*typed, *settings_keys(hydra)])
     for path in typed:
