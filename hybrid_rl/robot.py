@@ -50,7 +50,8 @@ def _trained(folder: Path, mode: str) -> Actor:
     trained = load(folder)
     controller, params = trained.learner(None, mode)
     assert trained.agent is not None
-    agent = replace(trained.agent, controller=ahead(controller, trained.agent.spec, 0.0, PENDING))
+    acting = ahead(controller, trained.agent.spec, 0.0, PENDING)
+    agent = replace(trained.agent, controller=acting, random_steps=0)
     return Actor(agent, folder / "robot", trained.seeds[0], False, jax.device_put(params))
 
 

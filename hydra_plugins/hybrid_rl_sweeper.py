@@ -18,8 +18,7 @@ class CheckedSweeper(Sweeper):
         """Hydra's: what to run, and by which launcher."""
         from hybrid_rl.cli import sweep
 
-        self.sweeper = sweep.Sweeper(self.params)
-        self.sweeper.setup(**given)
+        self.sweeper = sweep.Sweeper(self.params, **given)
 
     def sweep(self, arguments: list[str]) -> Any:
         """Run all jobs."""

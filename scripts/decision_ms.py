@@ -104,7 +104,7 @@ def main() -> None:
 
 def measured(agent: Agent, calls: int) -> dict[str, float]:
     """Milliseconds of a decision: median, 99%, and the fastest block by the processor's clock."""
-    decide = Exploring(agent, 0, random_steps=0)
+    decide = Exploring(replace(agent, random_steps=0), 0)
     decide.take(jax.jit(lambda: agent.params(agent.init(jax.random.key(0))))())
     obs, each, blocks = np.zeros(agent.spec.obs, np.float32), [], []
     for _ in range(calls // BLOCK):

@@ -94,9 +94,9 @@ MUTANTS = {
         "tests/run",
     ),
     "a misspelt override is ignored": Mutant(
-        "hybrid_rl/settings/build.py",
-        "if select(raw, path) is LACKING:",
-        "if False:",
+        "hybrid_rl/settings/complete.py",
+        "if select(raw, path) is not LACKING:",
+        "if True:",
         "tests/cli tests/test_errors.py",
     ),
     "violations in the tail count for the chance": Mutant(

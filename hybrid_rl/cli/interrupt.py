@@ -40,8 +40,7 @@ class _State:
     raises = False  # KeyboardInterrupt
     patience = PATIENCE
     ask: Ask | None = None
-    first: int | None = None  # the first signal in the present state
-    pressed = False  # whether Ctrl-C was among them
+    heard: tuple[int, ...] = ()  # signals in the present state
     raised: int | None = None  # the signal that became KeyboardInterrupt
     leaving = threading.Lock()  # never released: the process ends in one thread alone
 
@@ -63,12 +62,11 @@ def install() -> None:
 
 @contextmanager
 def as_exception(patience: float = PATIENCE) -> Iterator[None]:
-    """Within, a signal raises KeyboardInterrupt in the main thread of a command.
+    """Let a signal raise KeyboardInterrupt in the main thread of a command, within the block.
 
     patience: [s] for its clean-up, after which the process ends.
     """
-    _State.raises, _State.patience = True, patience
-    _State.first, _State.pressed = None, False
+    _State.heard, _State.raises, _State.patience = (), True, patience
     try:
         yield
     finally:
@@ -77,12 +75,12 @@ def as_exception(patience: float = PATIENCE) -> Iterator[None]:
 
 @contextmanager
 def as_call(ask: Ask) -> Iterator[None]:
-    """Within, the first signal calls ask(number), in another thread than the main one.
+    """Let the first signal call ask(number), in another thread than the main one.
 
     Without `install` a second Ctrl-C raises KeyboardInterrupt.
     """
     if _State.installed:
-        _State.first, _State.pressed, _State.ask = None, False, ask
+        _State.heard, _State.ask = (), ask
         try:
             yield
         finally:
@@ -157,14 +155,13 @@ def _listen(heard: int) -> None:
 
 
 def _act(number: int) -> None:
-    first, _State.first = _State.first, _State.first or number
-    pressed, _State.pressed = _State.pressed, _State.pressed or number == signal.SIGINT
+    before, _State.heard = _State.heard, (*_State.heard, number)
     if _State.ask is not None:
-        if first is None:
+        if not before:
             _State.ask(number)
-        elif pressed and number == signal.SIGINT:
+        elif number == signal.SIGINT and number in before:
             leave(number)
-    elif _State.raises and first is None:
+    elif _State.raises and not before:
         timer = threading.Timer(_State.patience, leave, (number,))
         timer.daemon = True
         timer.start()

@@ -81,13 +81,12 @@ def here(hydra: Any) -> bool:
 class Sweeper:
     """Checks, runs and reports every combination of the given values."""
 
-    def __init__(self, params: Any = None) -> None:
-        self.params = params or {}
-
-    def setup(self, *, hydra_context: Any, task_function: Any, config: DictConfig) -> None:
-        """Get from Hydra what to run, and by which launcher."""
+    def __init__(
+        self, params: Any, *, hydra_context: Any, task_function: Any, config: DictConfig
+    ) -> None:
+        """Get from Hydra what to run and how; params: values to sweep where no others are given."""
+        self.params, self.hydra_context, self.config = params or {}, hydra_context, config
         self.task = Task(task_function)
-        self.hydra_context, self.config = hydra_context, config
         self.launcher = Plugins.instance().instantiate_launcher(hydra_context, self.task, config)
 
     def sweep(self, arguments: list[str]) -> Any:
@@ -144,7 +143,7 @@ class Sweeper:
 
     @contextmanager
     def _naming(self, number: int) -> Iterator[None]:
-        """Within, errors name the job."""
+        """Name the job in errors of the block."""
         try:
             yield
         except (UsageError, *UNCOMPOSED) as error:
@@ -157,8 +156,7 @@ class Sweeper:
 
         One that runs elsewhere is built with the physics that needs no GPU here.
         """
-        local = here(self.config.hydra)
-        if not local and config.physics in ACCELERATED:
+        if not here(self.config.hydra) and config.physics in ACCELERATED:
             config.physics = "native"
         swept = expand_sweep(config, job)
         if config.resume is None:
@@ -240,11 +238,10 @@ def launch(launcher: Any, jobs: Sequence[list[str]], results: dict[int, Result])
         try:
             _wait(running, results)
         except BaseException:
-            if interrupt.cause() == signal.SIGHUP:  # jobs elsewhere need no terminal
-                raise
-            for job in running.values():
-                job.cancel(check=False)
-            _wait(running, results, PATIENCE)
+            if interrupt.cause() != signal.SIGHUP:  # jobs elsewhere need no terminal
+                for job in running.values():
+                    job.cancel(check=False)
+                _wait(running, results, PATIENCE)
             raise
 
 
@@ -255,7 +252,8 @@ def _executor(params: Mapping[str, Any], cluster: str) -> Any:
 
     of_all = BaseQueueConf.__dataclass_fields__
     given = {key if key in of_all else f"{cluster}_{key}": value for key, value in params.items()}
-    made = {key: given.pop(key) for key in (f"{cluster}_max_num_timeout",) if key in given}
+    most = f"{cluster}_max_num_timeout"
+    made = {most: given.pop(most)} if most in given else {}
     executor = submitit.AutoExecutor(given.pop("submitit_folder"), cluster=cluster, **made)
     executor.update_parameters(**given)
     return executor

@@ -1,7 +1,8 @@
-"""Decisions outside of a compiled loop: from observations to actions."""
+"""Decisions outside of a compiled loop: actions at observations, and the states that follow."""
 
 import time
 from collections.abc import Callable, Mapping
+from functools import partial
 from types import MappingProxyType
 from typing import Any
 
@@ -16,16 +17,18 @@ from hybrid_rl.protocols import Controller
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.ahead import AheadState
 from hybrid_rl.training.history import HistoryState, informed
-from hybrid_rl.types import Params, Spec
+from hybrid_rl.training.loop import Axis
+from hybrid_rl.types import Clock, EnvState, Params, Spec
 
 NONE: Mapping[str, Array] = MappingProxyType({})
+Told = np.ndarray | Array  # by a world outside
 
 
 class Acting:
     """u [S, N, m] = acting(params [S, ...], obs [S, N, o]) of S learners, in N worlds each.
 
     The controllers' states and the keys of their random numbers are kept from one decision to the
-    next. numbers: of a loop's axis by path [S]; of: maps one learner's numbers to its controller.
+    next. numbers: of a loop's axis by path [S]; mode: of the controller.
     """
 
     def __init__(
@@ -34,11 +37,11 @@ class Acting:
         controller: Controller,
         keys: Array,
         numbers: Mapping[str, Array] = NONE,
-        of: Callable[[Any], Controller] | None = None,
+        mode: str = "full",
     ) -> None:
         """keys: [S, N]."""
         (learners, worlds), self.spec, self._numbers = keys.shape, spec, dict(numbers)
-        own = (lambda numbers: controller) if of is None else of
+        own = partial(Axis().put, controller, f"controllers.{mode}")
         first = jax.vmap(lambda n: batching.repeat(own(n).init(spec), worlds), axis_size=learners)
 
         def decide(numbers: Any, params: Params, control: Any, obs: Array, keys: Array) -> tuple:
@@ -73,14 +76,14 @@ class Acting:
 
 
 class Exploring:
-    """The decisions of one learner while it trains, in one world; at random for `random_steps`."""
+    """The decisions of one learner while it trains, in one world; the first ones at random."""
 
     params: Params | None = None  # [1, ...]; None: there are none yet
 
-    def __init__(self, agent: Agent, seed: int, random_steps: int) -> None:
+    def __init__(self, agent: Agent, seed: int) -> None:
         """Compile."""
         key = jax.random.fold_in(jax.random.key(seed), int(time.time()))
-        self._size, self._random_steps = agent.spec.act, random_steps
+        self._random_steps = agent.random_steps
         self._random = np.random.default_rng(np.asarray(jax.random.key_data(key)))
         self._acting = Acting(agent.spec, agent.controller, key[None, None])
         many = jax.vmap(jax.vmap(informed, (0, None, None)), (0, None, None))
@@ -88,7 +91,7 @@ class Exploring:
         self.like = jax.eval_shape(lambda: agent.params(agent.init(key)))  # of the parameters
         self.take(jax.tree.map(lambda leaf: np.zeros(leaf.shape, leaf.dtype), self.like))
         self._acting.compile(self._with(0))
-        self(np.zeros(agent.spec.obs), random_steps)  # the first call takes longer
+        self(np.zeros(agent.spec.obs), agent.random_steps)  # the first call takes longer
         self.begin()
         self.params = None
 
@@ -117,7 +120,7 @@ class Exploring:
     def __call__(self, obs: np.ndarray, decisions: int) -> np.ndarray:
         """The action [m] at `obs` [o], after so many decisions of the run."""
         if decisions < self._random_steps:
-            return self._random.uniform(-1, 1, self._size).astype(np.float32)
+            return self._random.uniform(-1, 1, self._acting.spec.act).astype(np.float32)
         return self._acting(self._with(decisions), np.array(obs, np.float32)[None, None])[0, 0]
 
     def _with(self, decisions: int) -> Params:
@@ -179,6 +182,16 @@ class TrainedPolicy:
         self._begun = True
         u = self._acting(self._params, rows[None])[0].reshape(*values.shape[:-1], self.spec.act)
         return u if self._span is None else self._span[0] + self._span[1] * np.clip(u, -1, 1)
+
+
+def next_state(
+    env: EnvState, obs: Told, reward: Told, terminated: Told, truncated: Told
+) -> EnvState:
+    """The states [E] after a decision at `env` [E], of which a world outside tells the others."""
+    clock = Clock(env.clock.decision + 1, env.clock.total + reward)
+    return env.replace(
+        obs=obs, reward=reward, terminated=terminated, truncated=truncated, clock=clock
+    )
 
 
 def numbers(

@@ -79,9 +79,7 @@ class Actor:
         env = self.agent.episode.env
         assert isinstance(env, Robot)
         self.env, self.spec, self._kind = env, env.spec, row_type(env.spec)
-        self._decide = Exploring(
-            self.agent, self.seed, self.agent.random_steps if self.recording else 0
-        )
+        self._decide = Exploring(self.agent, self.seed)
         if self.params is not None:
             self._decide.take(self.params)
         self._lag = known_lag(self.env, self.folder) or 0.0

@@ -16,7 +16,6 @@ the end of a call.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from typing import Any
 
 import jax
@@ -26,14 +25,14 @@ from jax import Array
 
 from hybrid_rl.core.batching import where
 from hybrid_rl.envs.adapters.external import Copies, External, Outcome
-from hybrid_rl.outside.acting import NONE, Acting
-from hybrid_rl.outside.sending import mailbox, send
+from hybrid_rl.outside.acting import NONE, Acting, next_state
+from hybrid_rl.outside.sending import Mailbox, send
 from hybrid_rl.protocols import Controller
 from hybrid_rl.training.agent import AgentState
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Axis, Loop, put
+from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Loop, put
 from hybrid_rl.training.metrics import outcome
-from hybrid_rl.types import Clock, EnvState, Params, PyTree
+from hybrid_rl.types import EnvState, Params, PyTree
 
 RESUMED = "the environment begins a new episode, as its own state is in no checkpoint: the "
 RESUMED += "decisions after this one differ from those of a run without the interruption"
@@ -67,7 +66,7 @@ class HostLoop(Loop):
         return HostProgram(self, *map(self.compile_trace, self.trace(state)))
 
     def step(self, state: AgentState, step: Array) -> tuple[AgentState, dict[str, Array]]:
-        """As of `Loop`, in an environment where nothing changes: for the shapes."""
+        """A round of one learner where nothing changes in the environment, for the shapes."""
         u, state, planned = self._decide(state, step)
         state, led = self._observed(state, u, outcome_like(state.env), 1)
         state, learned = self._learn(state, step)
@@ -148,7 +147,7 @@ class HostProgram:
         self.copies: Copies | None = None  # made at the first call
 
     def __call__(self, state: AgentState, start: Array, rounds: Array) -> tuple[AgentState, Any]:
-        """As the program of `Loop`."""
+        """Train for some rounds, as the program of `Loop`."""
         loop, envs, first, made = self.loop, self.loop.agent.num_envs, int(start), False
         each = len(loop.seeds), envs
         if self.copies is None:
@@ -158,7 +157,7 @@ class HostProgram:
         rows = jax.tree.map(lambda row: np.zeros(row.shape, row.dtype), loop.rows)
         got = jax.tree.map(np.array, outcome_like(state.env))  # the state itself is donated
         u = np.zeros((*each, loop.agent.spec.act), np.float32)
-        with mailbox(loop.mesh.size) as sent:
+        with Mailbox(loop.mesh.size) as sent:
             for i in range(int(rounds)):
                 at = np.array([i, first + i * envs, made, sent.ticket], np.int32)
                 state, rows = self.act(state, rows, u, got, at)
@@ -193,10 +192,9 @@ class HostEvaluator:
         mode: str = "full",
     ) -> None:
         """Compile one decision in all of them."""
-        axis, numbers = (Axis(), NONE) if loop is None else (loop.axis, loop.numbers)
-        of = partial(axis.put, controller, f"controllers.{mode}")
+        numbers = NONE if loop is None else loop.numbers
         self.episode = episode
-        self._acting = Acting(episode.spec, controller, keys, numbers, of)
+        self._acting = Acting(episode.spec, controller, keys, numbers, mode)
         self._acting.compile(params)
 
     def __call__(
@@ -236,12 +234,6 @@ def seed_of(*numbers: int) -> int:
 
 def states(env: EnvState, got: Outcome) -> tuple[EnvState, EnvState]:
     """The states [E] after a decision at `env` [E]: the outcome, and what the next one sees."""
-    now = env.replace(
-        obs=got.obs,
-        reward=got.reward,
-        terminated=got.terminated,
-        truncated=got.truncated,
-        clock=Clock(env.clock.decision + 1, env.clock.total + got.reward),
-    )
+    now = next_state(env, got.obs, got.reward, got.terminated, got.truncated)
     first = jax.tree.map(jnp.zeros_like, now)
     return now, where(now.done, first, now).replace(obs=got.following)

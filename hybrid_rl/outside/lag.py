@@ -1,4 +1,4 @@
-"""Which actions acted between two observations, and how late: from the times of both.
+"""The actions that acted between two observations, and how late, from the times of both.
 
     share_i = |[t_i + lag, t_{i-1} + lag] and [0, T]| / T,   u_acted = sum_i share_i u_i
     lag = argmin_d |(I - P) (Y - U_acted(d) B)|^2

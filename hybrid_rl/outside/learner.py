@@ -18,12 +18,13 @@ from jax import Array
 
 from hybrid_rl.data.replay import Memory
 from hybrid_rl.errors import UsageError
+from hybrid_rl.outside.acting import next_state
 from hybrid_rl.outside.lag import acted
 from hybrid_rl.outside.row_log import row_type
 from hybrid_rl.training.agent import AgentState
 from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Loop, put
 from hybrid_rl.training.metrics import outcome
-from hybrid_rl.types import Clock, Params, PyTree, Transition
+from hybrid_rl.types import Params, PyTree, Transition
 
 
 @dataclass
@@ -73,13 +74,8 @@ class RowLoop(Loop):
     ) -> tuple[AgentState, dict[str, Array]]:
         """One learner after the updates of a decision, and what that one led to."""
         clock = jax.tree.map(lambda x: jnp.where(first, 0, x).astype(x.dtype), state.env.clock)
-        now = state.env.replace(
-            obs=made.next_obs,
-            reward=made.reward,
-            terminated=made.terminated,
-            truncated=made.truncated,
-            clock=Clock(clock.decision + 1, clock.total + made.reward),
-        )
+        before = state.env.replace(clock=clock)
+        now = next_state(before, made.next_obs, made.reward, made.terminated, made.truncated)
         state, metrics = self.agent.learn(state.replace(env=now), step)
         return state, {**metrics, **outcome(made.action, now)}
 

@@ -45,6 +45,7 @@ class RobotLoop(RowLoop):
     notes = (RESUMED,)
     folder: Path = field(default_factory=Path)
     cut: bool = False  # whether a call ends early
+    program: "RobotProgram | None" = field(default=None, init=False)
 
     def compile(self, state: AgentState) -> "RobotProgram":
         """The program (state, first step, rounds) -> (state, metrics)."""
@@ -57,7 +58,7 @@ class RobotLoop(RowLoop):
 
     def close(self) -> None:
         """End the robot's motion, and its process."""
-        if hasattr(self, "program"):
+        if self.program is not None:
             self.program.process.stop()
 
 
@@ -80,7 +81,7 @@ class RobotProgram:
         self.room: int | None = None  # rows that fit into the memory; None before the first call
 
     def __call__(self, state: AgentState, start: Array, rounds: Array) -> tuple[AgentState, Any]:
-        """As the program of `Loop`.
+        """Train for some rounds, as the program of `Loop`.
 
         If the robot's class is wrong, or the robot does not answer for long, it ends early, and the
         loop has the `fault`.

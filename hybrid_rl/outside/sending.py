@@ -6,12 +6,10 @@
 The program does not wait for the host. Each device sends those of its own learners.
 """
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from functools import cache
 from itertools import count
 from queue import Empty, SimpleQueue
-from typing import Any
+from typing import Any, Self
 
 import jax
 import jax.numpy as jnp
@@ -47,11 +45,19 @@ def send(u: Array, ticket: Array, axis: str) -> Array:
 
 
 class Mailbox:
-    """Gets what programs send with this `ticket`."""
+    """Gets what programs send with its `ticket`; what comes after its block is dropped."""
 
-    def __init__(self, ticket: int, parts: int) -> None:
+    def __init__(self, parts: int) -> None:
         """parts: devices that send."""
-        self.ticket, self.parts, self._box = ticket, parts, _boxes[ticket]
+        self.ticket = next(_tickets) % 2**24  # a whole number in float32
+        self.parts, self._box = parts, SimpleQueue()
+
+    def __enter__(self) -> Self:
+        _boxes[self.ticket] = self._box
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        del _boxes[self.ticket]
 
     def next(self, result: Any) -> np.ndarray:
         """The actions [S * E, m] of the next program, whose result is `result`.
@@ -69,17 +75,6 @@ class Mailbox:
                     raise RuntimeError("a program ended without sending its actions") from None
         parts.sort(key=lambda part: part[0, -1])
         return np.concatenate(parts)[:, :-1]
-
-
-@contextmanager
-def mailbox(parts: int) -> Iterator[Mailbox]:
-    """A mailbox for programs that send; what comes after the block is dropped."""
-    ticket = next(_tickets) % 2**24  # a whole number in float32
-    _boxes[ticket] = SimpleQueue()
-    try:
-        yield Mailbox(ticket, parts)
-    finally:
-        del _boxes[ticket]
 
 
 @cache

@@ -54,7 +54,7 @@ class Evaluations:
                 each.program.result()
 
     def __call__(self, params: Params, cut: Callable[[], bool]) -> list[dict[str, float]] | None:
-        """For each learner the mean of every outcome; None once `cut` is true."""
+        """The mean of every outcome for each learner; None once `cut` is true."""
         means: dict[str, np.ndarray] = {}  # [S]
         for mode, evaluator in self._evaluators.items():
             outcomes = evaluator(params, self.keys, lambda made: cut())

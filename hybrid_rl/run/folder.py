@@ -25,7 +25,7 @@ from hybrid_rl.files.reading import json_file, yaml_file
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.settings.build import CONF
 from hybrid_rl.settings.values import SECTIONS, check
-from hybrid_rl.settings.words import quoted
+from hybrid_rl.settings.words import plain, quoted
 from hybrid_rl.version import __version__
 
 SWEEP = "sweep.json"  # in the folder of runs that one program trains (hybrid_rl.run.members)
@@ -101,7 +101,7 @@ def as_yaml(config: DictConfig) -> str:
         node = {name: share(node[name]) for name in names}
         return first.setdefault(str(node), node) if "_target_" in node else node
 
-    values = share(OmegaConf.to_container(config))
+    values = share(plain(config))
     return yaml.dump(values, Dumper=_Dumper, sort_keys=False, allow_unicode=True)
 
 
@@ -131,7 +131,7 @@ def read(folder: Path, key: str) -> DictConfig:
 
 
 def read_trained(folder: Path, key: str) -> DictConfig:
-    """As `read`; UsageError also of a run without a checkpoint."""
+    """The configuration of a run that has a checkpoint; UsageError otherwise, and as of `read`."""
     config = read(folder, key)
     if not checkpoint.steps(folder / "checkpoints"):
         raise UsageError(f"{key}={folder}: holds no checkpoint yet")

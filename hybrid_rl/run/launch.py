@@ -64,7 +64,7 @@ class Output:
     def __call__(self, row: Row) -> None:
         """Call the function."""
         try:
-            if self.problem is None and self.function(dict(row)) is False:
+            if self.problem is None and self.function(row) is False:
                 self.ask(0)
         except FAULTS as problem:
             self.problem = problem
@@ -193,8 +193,7 @@ def _begin(job: Job, output: Output) -> dict[str, Any]:
     """Run what is built in new folders."""
     fits(job.runs)  # before a folder is made
     configs = [run.config for run in job.runs]
-    logger = one_of("logger", configs[0].get("logger"), (None, "wandb"))
-    if logger is not None and find_spec("wandb") is None:
+    if configs[0].get("logger") and find_spec("wandb") is None:
         raise UsageError(f"logger=wandb: not installed; {install('wandb')}")
     with folder.claim_folders(configs) as folders:
         return _run(replace(job, folders=folders), output)

@@ -26,7 +26,7 @@ from hybrid_rl.run.logs.records import flatten_keys
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings import words as overrides
 from hybrid_rl.settings.build import Run
-from hybrid_rl.settings.complete import LACKING, refusal, select, source
+from hybrid_rl.settings.complete import require, source
 from hybrid_rl.settings.words import plain
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.loop import Axis, DifferError, Loop
@@ -57,8 +57,7 @@ def expand_sweep(config: DictConfig, texts: Sequence[str]) -> list[Member]:
     lists, config = flatten_keys(raw.pop("sweep") or {}), config.copy()
     config.sweep = {}
     for key, values in lists.items():
-        if select(raw, key) is LACKING:
-            raise UsageError(f"sweep.{refusal(key, raw)}")
+        require(raw, key, prefix="sweep.")
         numbers = values if isinstance(values, list) else []
         finite = all(type(x) in (int, float) and isfinite(x) for x in numbers)
         if not numbers or not finite or len({*numbers}) < len(numbers):
@@ -136,7 +135,7 @@ def loop_of(
     folder: Path = Path(),
     axis: Axis | None = None,
 ) -> Loop:
-    """On the device; on the host where its environment is there; or on a robot.
+    """The loop that trains an agent: on the device, on the host, or on a robot.
 
     folder: of the run, in which the files of a robot are. axis: of `Loop`.
     """

@@ -77,11 +77,11 @@ class OnlineLearner:
         self.config = _config(method, {"obs": obs, "act": act, "dt": dt}, seed, config_dir)
         check(self.config)
         prepare(self.config)
-        run = configuration.built(self.config)
+        run = configuration.build(self.config)
         fits([run])
         self._mode, self._lock, self._spec = learn, threading.Lock(), run.agent.spec
         self._loop = RowLoop(run.agent, run.seeds, 1)
-        self._decide = Exploring(run.agent, run.seeds[0], run.agent.random_steps)
+        self._decide = Exploring(run.agent, run.seeds[0])
         self._kind, self._rows = row_type(self._spec), {}  # number -> row
         self._learner = RowLearner(self._loop, self._loop.init(), self._rows.get)
         self._lag = run.agent.episode.known_lag  # [decisions]

@@ -8,7 +8,6 @@ from typing import Any
 
 import jax
 import numpy as np
-from omegaconf import OmegaConf
 
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.core.lifting import is_identity
@@ -19,6 +18,7 @@ from hybrid_rl.protocols import Controller
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.run.saved import OBJECTIVES, Trained, load
 from hybrid_rl.settings import build as configuration
+from hybrid_rl.settings.words import plain
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import Params, Transition
@@ -93,7 +93,7 @@ def _models(
     folder: Path, run: Trained, params: Params, about: dict[str, Any] | None
 ) -> dict[str, Any]:
     """The parameters to plan with, whose parts are added to `about`."""
-    config: Any = run.config
+    config = plain(run.config)
     parts = {"model": params.model, "reward_model": params.reward}
     if about is None or any(value is None or not config.get(n) for n, value in parts.items()):
         raise UsageError(f"models=true: {folder} has no policy with a learned model and reward")
@@ -101,7 +101,7 @@ def _models(
     if params.critic is not None:
         parts["critic"] = params.critic
         known += ["critic", *(name for name in OBJECTIVES if name in config)]
-    about |= {name: _anywhere(OmegaConf.to_container(config[name])) for name in known}
+    about |= {name: _anywhere(config[name]) for name in known}
     return parts
 
 
@@ -120,7 +120,7 @@ def _description(folder: Path, trained: Trained, command: str, seed: int) -> dic
 
     None if its controller `policy` is not a policy of observations alone.
     """
-    config: Any = trained.config
+    config = plain(trained.config)
     controller: Any = trained.controllers.get("policy")
     if not isinstance(controller, PolicyController):
         return None
@@ -128,15 +128,12 @@ def _description(folder: Path, trained: Trained, command: str, seed: int) -> dic
     if not is_identity(controller.model, model, trained.episode.spec.obs):
         return None
     named = [name for name in ("env", *configuration.PAID) if config.get(name) is not None]
-    parts: Any = {
-        "episode": OmegaConf.to_container(config.episode),
-        "policy": OmegaConf.to_container(config.controllers.policy.policy),
-    }
-    parts |= {name: _anywhere(OmegaConf.to_container(config[name])) for name in named}
     summary = json_file(folder / "summary.json", optional=True)
     return {
-        **parts,
-        **{"algo": config.algo, "seed": seed, "step": trained.step, "command": command},
+        "episode": config["episode"],
+        "policy": config["controllers"]["policy"]["policy"],
+        **{name: _anywhere(config[name]) for name in named},
+        **{"algo": config["algo"], "seed": seed, "step": trained.step, "command": command},
         "evaluation": _evaluation(folder, trained.step, trained.seeds.index(seed)),
         **{key: summary.get(key) for key in ("device", "versions", "git_commit")},
     }

@@ -39,7 +39,7 @@ from hybrid_rl.protocols import Controller
 from hybrid_rl.protocols.contract import has_users
 from hybrid_rl.run.saved import Trained, load_named
 from hybrid_rl.settings import build as configuration
-from hybrid_rl.settings.complete import LACKING, complete, refusal, select
+from hybrid_rl.settings.complete import complete, require
 from hybrid_rl.settings.groups import search_path
 from hybrid_rl.settings.words import forced, plain, typed_values, value_of
 from hybrid_rl.training.contract import check_acting
@@ -118,8 +118,7 @@ def aimed(
         goal = (*configuration.PAID, "imagine") if group == "planner" else ()  # they bring one
         if not {group, *goal} & {*named}:
             raise UsageError(f"{named[key]}: is a key of {group}=NAME; give that with it")
-        if select(raw, key) is LACKING:
-            raise UsageError(refusal(key, {**raw, "algo": config.get("algo")}))
+        require({**raw, "algo": config.get("algo")}, key)
     goal = _fitting(config, OmegaConf.create({key: raw[key] for key in composed}))
     for text in overrides:
         if (key := re.split("[.=]", text)[0]) in (*PLANNERS, "imagine") and key not in goal:
@@ -187,7 +186,7 @@ def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
     for name in configuration.PAID:
         goal[name] = goal[name] or config.get(name)
     for planner in (goal[name] for name in PLANNERS if "priced" in goal[name]):
-        planner.priced = own and _priced(config, goal.constraint)
+        planner.priced = own and _priced(config, plain(goal)["constraint"])
     if "proposal" in config or "policy" not in config:
         del goal.proposal
     if not {"model", "reward_model"} <= {*config}:
@@ -199,13 +198,11 @@ def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
     return goal
 
 
-def _priced(config: dict[Any, Any], limit: Any) -> bool:
+def _priced(config: dict[Any, Any], limit: dict[Any, Any] | None) -> bool:
     """True if the reward of a run was learned with the price of this limit.
 
     That price stays, also if `constraint.price` is another one now.
     """
-    if isinstance(limit, DictConfig):
-        limit = OmegaConf.to_container(limit)  # it refers to a world
     before, now = (
         {key: value for key, value in (each or {}).items() if key not in SOFT}
         for each in (config.get("constraint"), limit)

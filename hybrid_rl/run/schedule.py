@@ -1,4 +1,4 @@
-"""When a run logs, evaluates and saves, and the length of calls of its program between."""
+"""The steps at which a run logs, evaluates and saves, and the length of calls between them."""
 
 from collections.abc import Collection
 from dataclasses import dataclass

@@ -14,7 +14,7 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
-from omegaconf import DictConfig, OmegaConf, open_dict
+from omegaconf import DictConfig, open_dict
 
 from hybrid_rl.core.batching import join
 from hybrid_rl.errors import MisfitError, UsageError
@@ -27,7 +27,7 @@ from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings import words as overrides
 from hybrid_rl.settings.build import Run
 from hybrid_rl.settings.groups import search_path
-from hybrid_rl.settings.words import name
+from hybrid_rl.settings.words import name, plain
 from hybrid_rl.training.agent import Agent, AgentState
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import forgotten
@@ -67,7 +67,7 @@ def _recipe(run_dir: Path, config_dir: str | Path | None) -> list[str]:
     if made_by is None or any(map(FOREIGN.search, kept)):
         line = "must be a list of KEY=VALUE; train it again"
         raise UsageError(f"{run_dir / 'config.yaml'}: recipe: {line}")
-    made: Any = OmegaConf.to_container(configuration.load(kept, folders))
+    made = plain(configuration.load(kept, folders))
     made.pop("recipe")
     parts.check(made, run_dir)
     chosen = {"task": config.task, "algo": config.algo}
@@ -99,18 +99,18 @@ def joined(starts: Sequence[Start | None]) -> Start | None:
 
 
 def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:
-    """The new run of a checked configuration, and what it begins with: that of the run in `run`.
+    """The new run of a configuration, and what it begins with: that of the run in `run`.
 
     The configuration gets `begun`, from which the run can be built without that folder.
     """
     if config.get("run") is None:
-        return configuration.built(config), None
+        return configuration.build(config), None
     source = Path(str(config.run))
     then = folder.read_trained(source, "run")
     if config.pretrain:
         raise UsageError(f"pretrain={config.pretrain}: what run={source} has learned is kept")
     numbers = _numbers(config, then, source)
-    run = configuration.built(config)
+    run = configuration.build(config)
     holds, why = _remembers(run.agent.episode, config, then)
     try:
         seeds = range(then.seed, then.seed + then.num_seeds)
@@ -129,7 +129,7 @@ def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:
     with open_dict(config):
         config.begun = {"step": step, "remembered": remembered, "memory": words}
     if memory is not None:
-        run = configuration.built(config)  # with room for what it remembers
+        run = configuration.build(config)  # with room for what it remembers
         memory = _rewritten(run.agent, memory, why == RELABELLED)
     if why:  # they imagined other rewards, or another world
         state = state.replace(learners=forgotten(state.learners))
@@ -152,7 +152,7 @@ def _numbers(config: DictConfig, then: DictConfig, source: Path) -> Any:
 
 def _flat(config: DictConfig, *names: str) -> dict[str, Any]:
     """The values at these keys, by full keys; not of a part's own world."""
-    values: Any = OmegaConf.to_container(config)
+    values = plain(config)
     chosen = {key: values[key] for key in names if values.get(key) is not None}
     return {key: value for key, value in flatten_keys(chosen).items() if ".world." not in key}
 

@@ -1,4 +1,4 @@
-"""From overrides to parts: compose conf/, check it, build a run."""
+"""Make parts of overrides: compose conf/, check it, build a run."""
 
 import re
 from collections.abc import Callable, Iterator, Sequence
@@ -20,14 +20,14 @@ from hybrid_rl.errors import PartError, UsageError
 from hybrid_rl.fields import FieldError
 from hybrid_rl.files.targets import build as build_part
 from hybrid_rl.protocols import Controller
-from hybrid_rl.settings.complete import LACKING, complete, refusal, select
+from hybrid_rl.settings.complete import complete, require
 from hybrid_rl.settings.compose import (
     UNCOMPOSED,
     adopt_planner,
     complete_names,
     explain,
-    keys_of,
     settings_keys,
+    typed_keys,
 )
 from hybrid_rl.settings.groups import CONF, groups, register, search_path
 from hybrid_rl.settings.values import (
@@ -40,7 +40,7 @@ from hybrid_rl.settings.values import (
     time_limit,
     whole,
 )
-from hybrid_rl.settings.words import forced, name, of_job, plain, typed_values
+from hybrid_rl.settings.words import forced, name, plain, typed_values
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.history import acting as acting_in
@@ -51,7 +51,7 @@ READ = (  # the keys that a run reads, and with them all keys that they refer to
     *("physics", "run_dir", "resume", "eval_modes", "checkpoint_replay", "compile_cache"),
     *("precision", "logger", "run", "freeze"),
 )
-register(CONF)  # before Hydra composes anything
+register()  # before Hydra composes anything
 OmegaConf.register_new_resolver("ratio", lambda a, b: a / b, replace=True)  # ${ratio:A,B}
 OmegaConf.register_new_resolver("pick", lambda key, of: of[key], replace=True)  # ${pick:A,{A: 1}}
 SENSED = "hybrid_rl.training.wrappers.Sensed"
@@ -123,15 +123,13 @@ def read(config: DictConfig) -> DictConfig:
     complete_names(config, hydra)
     adopt_planner(config, hydra)
     raw = plain(config)
-    typed = keys_of(of_job(hydra), hydra) if raw["resume"] is None else []
+    typed = typed_keys(hydra) if raw["resume"] is None else []
     # a part that lacks a key of `settings` keeps what it has
     raw = complete(raw, (*READ, "sweep"), [*typed, *settings_keys(hydra)])
     for path in typed:
-        if select(raw, path) is LACKING:
-            raise UsageError(refusal(path, raw, hydra.runtime.choices.get(path)))
+        require(raw, path, hydra.runtime.choices.get(path))
     sources = (each.path for each in hydra.runtime.config_sources if each.schema == "file")
-    mine = [path for path in sources if Path(path) != CONF]
-    raw["config_dir"] = mine[0] if mine else None  # of the user's files
+    raw["config_dir"] = next((path for path in sources if Path(path) != CONF), None)  # the user's
     return OmegaConf.create(raw, flags={"struct": True})
 
 
@@ -161,11 +159,6 @@ def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
 def build(config: DictConfig) -> Run:
     """The parts that `config` names, with room in the memory for what another run gave."""
     check(config)
-    return built(config)
-
-
-def built(config: DictConfig) -> Run:
-    """As `build`, of a configuration that `check` has passed."""
     rounds = -(-config.total_steps // config.num_envs)
     remembered = config.get("begun", {}).get("remembered", 0)  # decisions of each environment
     whole("replay.capacity", config.replay.capacity)

@@ -54,7 +54,7 @@ def complete(
     """The keys of `raw` at or below `roots`, and those that they refer to; parts are complete.
 
     raw: what was composed, with its references. typed: keys of the user, which are left out where
-    a part has no such field; `refusal` is the line about them.
+    a part has no such field; `require` refuses them then.
     """
     for path in typed:
         above, _, name = source(raw, path).rpartition(".")
@@ -154,11 +154,17 @@ def _kept(node: Any, read: Mapping[str, Any], where: str = "") -> Any:
     return kept
 
 
-def refusal(path: str, raw: dict[str, Any], choice: str | None = None) -> str:
-    """The line about a typed key that a configuration lacks; choice: what it is to be, of conf/."""
+def require(raw: dict[str, Any], path: str, choice: str | None = None, prefix: str = "") -> None:
+    """Raise UsageError for a typed key that a configuration lacks.
+
+    choice: what it is to be, of conf/; prefix: what was typed before it, such as `sweep.`.
+    """
+    if select(raw, path) is not LACKING:
+        return
+    algo = raw.get("algo")
     if choice:
         near = [f"; did you mean {path}@{key}={choice}?" for key in raw if key.endswith("_" + path)]
-        return f"{path}={choice}: {raw.get('algo')} has no {path}{''.join(near[:1])}"
+        raise UsageError(f"{path}={choice}: {algo} has no {path}{''.join(near[:1])}")
     above, _, last = path.rpartition(".")
     group = select(raw, above) if above else None
     if isinstance(group, dict):
@@ -169,8 +175,8 @@ def refusal(path: str, raw: dict[str, Any], choice: str | None = None) -> str:
         known = [*(key for key, value in values if not REFERENCE.match(str(value))), *CHOICES]
         hint = "`--cfg job` shows every key"
     near = nearest(last, known)
-    line = f"{path}: {raw.get('algo')} has no such key"
-    return f"{line}; {f'did you mean {near}?' if near else hint}"
+    hint = f"did you mean {near}?" if near else hint
+    raise UsageError(f"{prefix}{path}: {algo} has no such key; {hint}")
 
 
 def nearest(word: str, known: Iterable[str]) -> str:

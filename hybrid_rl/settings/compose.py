@@ -1,4 +1,4 @@
-"""Around Hydra's composition (build.py): its errors in one line, a task or method of the user's."""
+"""What surrounds Hydra's composition (build.py): errors in one line, the user's tasks, methods."""
 
 import re
 from collections.abc import Sequence
@@ -24,13 +24,13 @@ UNCOMPOSED = (HydraException, OmegaConfBaseException, yaml.YAMLError)  # what `e
 INHERIT = "set them, or begin with defaults: [/task@_global_: pendulum, _self_] to take its values"
 
 
-def keys_of(texts: Sequence[str], hydra: Any) -> list[str]:
-    """The keys that overrides change: of a choice that of the part it makes.
+def typed_keys(hydra: Any) -> list[str]:
+    """The keys that the user's overrides change: of a choice that of the part it makes.
 
     A choice that spreads over the configuration, as `algo`, and `sweep.KEY` have none.
     """
     found = []
-    for override in overrides.parse(texts):
+    for override in overrides.parse(overrides.of_job(hydra)):
         file = chosen(hydra, override.key_or_group)
         spreads = file is not None and GLOBAL in file.read_text(encoding="utf-8")[:100]
         if not (spreads or override.is_delete() or overrides.is_swept(override.key_or_group)):

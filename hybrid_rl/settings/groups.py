@@ -86,12 +86,11 @@ def _of(folder: Path) -> dict[str, str]:
     return found
 
 
-@cache
-def register(conf: Path) -> None:
-    """Let Hydra know the choices that `conf` has no file of."""
+def register() -> None:
+    """Let Hydra know the choices that conf/ has no file of."""
     from hydra.core.config_store import ConfigStore  # not for a list of names
 
     store = ConfigStore.instance()
-    for group, names in choices(conf).items():
+    for group, names in choices(CONF).items():
         for name, target in names.items():
             store.store(name, {"_target_": target}, group=group, provider="hybrid_rl")

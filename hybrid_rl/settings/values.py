@@ -5,7 +5,7 @@ from collections.abc import Collection, Mapping
 from numbers import Integral
 from typing import Any
 
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig
 
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.adapters.robot import Robot
@@ -16,6 +16,7 @@ from hybrid_rl.fields import as_yaml
 from hybrid_rl.files import targets as parts
 from hybrid_rl.networks.precision import PRECISIONS
 from hybrid_rl.settings.groups import MODES
+from hybrid_rl.settings.words import plain
 from hybrid_rl.types import NAME
 
 COUNTS = (
@@ -24,6 +25,7 @@ COUNTS = (
 )
 SECTIONS = ("env", "episode", "replay", "controllers", "learners")
 PAID = ("reward", "constraint")  # what the world pays and asks for; a run may lack the keys
+KNOWN = {"precision": PRECISIONS, "physics": IMPLEMENTATIONS, "logger": (None, "wandb")}
 TRUE_MODEL = "hybrid_rl.models.world.World"
 MARGIN = 3.0  # of branches with a history, in ranges of real states
 STEPS = 2**31  # decisions, fewer of which are counted
@@ -36,7 +38,7 @@ def check(config: DictConfig) -> None:
         if not isinstance(config[key], DictConfig):
             hint = f"; did you mean task={config[key]}?" if key == "env" else ""
             raise UsageError(f"{key}={as_yaml(config[key])}: must be a group of keys{hint}")
-    values = OmegaConf.to_container(config)
+    values = plain(config)
     parts.check(values)
     for key in ("task", "algo"):  # which become folders, or overrides
         if not NAME.fullmatch(str(config.get(key))):
@@ -53,8 +55,8 @@ def check(config: DictConfig) -> None:
     whole("seed", config.seed, 0, SEEDS - config.num_seeds)
     for mode in [None] if config.eval_modes is None else config.eval_modes:
         one_of("eval_modes", mode, MODES)
-    for key, known in (("precision", PRECISIONS), ("physics", IMPLEMENTATIONS)):
-        one_of(key, config[key], known)
+    for key, known in KNOWN.items():
+        one_of(key, config.get(key), known)
 
 
 def time_limit(env: External | Robot, given: Mapping[str, Any]) -> dict[str, int]:

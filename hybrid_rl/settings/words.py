@@ -1,7 +1,7 @@
 """Overrides of the user: what they name, and how Hydra takes them.
 
 Values are forced (`++KEY=VALUE`): a key need not stand in a YAML file, as fields of parts have the
-defaults of their classes. `settings.complete.refusal` is the line about a key that nothing reads.
+defaults of their classes. `settings.complete.require` refuses a key that nothing reads.
 """
 
 import re

@@ -16,7 +16,7 @@ from test_host_loop import ROUNDS, STEPS, agents
 from hybrid_rl.errors import WorldError
 from hybrid_rl.learners.return_scale import ReturnScale
 from hybrid_rl.outside import sending
-from hybrid_rl.outside.sending import mailbox, send
+from hybrid_rl.outside.sending import Mailbox, send
 from hybrid_rl.run.members import loop_of
 from hybrid_rl.settings import build as config
 from hybrid_rl.training.episode import Episode
@@ -119,7 +119,7 @@ def test_nothing_is_awaited_from_a_program_that_ended(raised, line, monkeypatch)
                 raise raised
 
     monkeypatch.setattr(sending, "POLL_S", 0.01)
-    with pytest.raises((ArithmeticError, RuntimeError), match=line), sending.mailbox(1) as sent:
+    with pytest.raises((ArithmeticError, RuntimeError), match=line), sending.Mailbox(1) as sent:
         sent.next(Result())
 
 
@@ -135,7 +135,7 @@ def test_the_host_gets_what_a_program_sends_once(backend, monkeypatch):
         return 2 * (sent if backend == "cpu" else u)
 
     compiled = loop.shard(program, (SEEDS, REPLICATED), SEEDS)
-    with mailbox(1) as sent:
+    with Mailbox(1) as sent:
         for _ in range(3):
             result = compiled(u, np.int32(sent.ticket))
             np.testing.assert_array_equal(sent.next(result), u[0])

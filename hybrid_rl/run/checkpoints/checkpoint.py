@@ -80,12 +80,11 @@ def save(folder: Path, step: int, state: PyTree, meta: dict, keep: int = KEEP) -
         leaves.write(draft, arrays)
         list_files(draft)
         path = _rename(draft, folder / str(step))
-    except BaseException as problem:
-        line = _refusal(folder, step, problem)
-        shutil.rmtree(draft, ignore_errors=True)
-        if not isinstance(problem, Exception):  # Ctrl-C and the like
-            raise
-        raise CheckpointError(line) from problem
+    except Exception as problem:
+        raise CheckpointError(_refusal(folder, step, problem)) from problem
+    finally:
+        if draft.exists():  # after an error, or Ctrl-C
+            shutil.rmtree(draft, ignore_errors=True)
     known = steps(folder)
     sound = [s for s in known if s <= step and not verify(folder / str(s), False)]
     for old in set(known) - set(sound[-keep:]):  # those that the new one replaces
@@ -158,7 +157,7 @@ def _rename(draft: Path, path: Path) -> Path:
     return path
 
 
-def _refusal(folder: Path, step: int, problem: BaseException) -> str:
+def _refusal(folder: Path, step: int, problem: Exception) -> str:
     """One line for a checkpoint that could not be written."""
     reason = " ".join(str(problem).split()) or type(problem).__name__
     if system := re.search(r"([^:]+) \[os_error_code=", reason):  # the end of TensorStore's message

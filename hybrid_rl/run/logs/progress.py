@@ -36,7 +36,7 @@ def say(text: str) -> None:
 
 @contextmanager
 def ignore_closed_output() -> Iterator[None]:
-    """Within, output that cannot be written is dropped, and so is all after it."""
+    """Drop what cannot be written to the output in the block, and all after it."""
     try:
         yield
     except OSError:
