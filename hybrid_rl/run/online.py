@@ -77,7 +77,7 @@ class OnlineLearner:
         self.config = _config(method, {"obs": obs, "act": act, "dt": dt}, seed, config_dir)
         check(self.config)
         prepare(self.config)
-        run = configuration.built(self.config)
+        run = configuration.build(self.config)
         fits([run])
         self._mode, self._lock, self._spec = learn, threading.Lock(), run.agent.spec
         self._loop = RowLoop(run.agent, run.seeds, 1)

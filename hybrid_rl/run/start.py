@@ -104,13 +104,13 @@ def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:
     The configuration gets `begun`, from which the run can be built without that folder.
     """
     if config.get("run") is None:
-        return configuration.built(config), None
+        return configuration.build(config), None
     source = Path(str(config.run))
     then = folder.read_trained(source, "run")
     if config.pretrain:
         raise UsageError(f"pretrain={config.pretrain}: what run={source} has learned is kept")
     numbers = _numbers(config, then, source)
-    run = configuration.built(config)
+    run = configuration.build(config)
     holds, why = _remembers(run.agent.episode, config, then)
     try:
         seeds = range(then.seed, then.seed + then.num_seeds)
@@ -129,7 +129,7 @@ def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:
     with open_dict(config):
         config.begun = {"step": step, "remembered": remembered, "memory": words}
     if memory is not None:
-        run = configuration.built(config)  # with room for what it remembers
+        run = configuration.build(config)  # with room for what it remembers
         memory = _rewritten(run.agent, memory, why == RELABELLED)
     if why:  # they imagined other rewards, or another world
         state = state.replace(learners=forgotten(state.learners))
