@@ -153,10 +153,10 @@ def train(
         run = run_of(method, **values)
         result = Result(launch.train_built(run, output), run)
     else:
+        given = {} if isinstance(method, DictConfig) else typed_values(method)
         if settings:
             texts = ", ".join(f'"{key}={value}"' for key, value in settings.items())
             raise UsageError(f"train: keywords are for an agent; write train([{texts}, ...])")
-        given = {} if isinstance(method, DictConfig) else typed_values(method)
         runs = members.load(method, config_dir)
         result = Result(launch.train(runs, given, output))
     if result["signal"] is not None:

@@ -28,6 +28,10 @@ GYMNASIUM = (  # what an environment of Gymnasium is here
     "a gymnasium.Env, and this must be a class with JAX functions; task=gymnasium "
     "env.make=MODULE:CLASS, or External(make=CLASS) in Python, trains in it as it is"
 )
+NO_WORDS = (  # what to write where a command is a list of words
+    'give a list of words, such as ["task=pendulum", "algo=sac"]; a Gymnasium environment is '
+    '["task=gymnasium", "env.make=MODULE:CLASS"], one in JAX is part of an Agent (docs/python.md)'
+)
 
 
 class UsageError(ValueError):
@@ -147,6 +151,15 @@ def relative(file: str | Path) -> str:
     """A path as messages show it: from the working folder if it lies below."""
     path = Path(file)
     return str(path.relative_to(Path.cwd()) if Path.cwd() in path.parents else path)
+
+
+def kind_of(value: Any) -> str:
+    """float32[2], or the kind of a Python value."""
+    if getattr(value, "dtype", None) is not None:
+        return f"{value.dtype}{list(value.shape)}"
+    if isinstance(value, tuple):
+        return f"a tuple of {len(value)}"
+    return "None" if value is None else f"a {type(value).__name__}"
 
 
 def printable(words: object) -> str:

@@ -1,11 +1,12 @@
-"""Tasks, methods and experiments, one line each.
+"""Tasks, methods, models, planners and experiments, one line each.
 
     python -m hybrid_rl.list
     python -m hybrid_rl.list config_dir=my_conf
 
-The description is the first comment of the YAML file. Methods with a comment "Needs an analytic
-task." are listed under [needs an analytic task], tasks that have what some methods need likewise.
-With config_dir=DIR the entries of that folder, such as thesis/conf, are listed, too.
+The description is the first comment of the YAML file, or the first line of the module. Methods with
+a comment "Needs an analytic task." are listed under [needs an analytic task], tasks that have what
+some methods need likewise. With config_dir=DIR the entries of that folder, such as thesis/conf, are
+listed, too.
 """
 
 if __name__ == "__main__":
@@ -19,10 +20,11 @@ from pathlib import Path
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import CONFIG_DIR, read
 from hybrid_rl.errors import relative
-from hybrid_rl.settings.groups import CONF, THESIS, search_path
+from hybrid_rl.settings.groups import CONF, PACKAGE, THESIS, choices, files, search_path
 
 MARKS = ("# Has ", "# Needs ")  # of a task, and of a method that not every task fits
-GROUPS = {"task": "Tasks", "algo": "Methods", "experiment": "Experiments"}
+GROUPS = {"task": "Tasks", "algo": "Methods", "model": "Models", "planner": "Planners"}
+GROUPS |= {"experiment": "Experiments"}
 FIRST = (  # of the methods; parts of others and baselines follow
     *("hybrid_stochastic", "hybrid_deterministic", "sac", "flash_sac", "ppo", "nn_mppi"),
     *("hybrid_bc", "kle3", "koopman_active"),
@@ -31,21 +33,17 @@ ARGUMENTS = (CONFIG_DIR,)
 
 
 def listing(conf: Path = CONF) -> dict[str, dict[str, Path]]:
-    """Group -> name -> its YAML file."""
-    return {
-        group: {
-            path.relative_to(conf / group).with_suffix("").as_posix(): path
-            for path in sorted((conf / group).rglob("*.yaml"))
-        }
-        for group in GROUPS
-    }
+    """Group -> name -> its YAML file, or its module."""
+    modules = choices(CONF)["model"] if conf == CONF else ()
+    plain = {name: PACKAGE / "models" / f"{name}.py" for name in modules}
+    return {group: files(group, [conf]) | (plain if group == "model" else {}) for group in GROUPS}
 
 
 def about(path: Path) -> str:
-    """The first comment of a YAML file, except Hydra's `@package`."""
+    """The first comment of a YAML file, except Hydra's `@package`, or a module's first line."""
     for line in path.read_text(encoding="utf-8").splitlines():
-        text = line.lstrip("#").strip()
-        if line.startswith("#") and text and not text.startswith("@package"):
+        text = line.strip('#" ')
+        if line.startswith(("#", '"')) and text and not text.startswith("@package"):
             return text
     return ""
 

@@ -17,7 +17,7 @@ from tiny import SMALL
 from hybrid_rl.controllers.gradient import GradientController
 from hybrid_rl.files import targets as parts
 from hybrid_rl.settings import build as config
-from hybrid_rl.settings.groups import choices, file, options
+from hybrid_rl.settings.groups import choices, files, options
 
 PARTS = {  # every class that a choice of a group, or a file of conf/, names
     *(kind for names in choices(config.CONF).values() for kind in names.values()),
@@ -155,7 +155,7 @@ def test_settings_annealed_lengthens_branches_and_lowers_rates_at_the_end() -> N
 PLANNERS = [  # methods that have mode=planner
     name
     for name in options("algo")
-    if "\n  planner: " in file("algo", name).read_text(encoding="utf-8")
+    if "\n  planner: " in files("algo")[name].read_text(encoding="utf-8")
 ]
 
 

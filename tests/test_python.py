@@ -129,6 +129,7 @@ def test_a_signal_stays_the_cause_of_the_end_where_the_function_asks_as_well():
     [
         (lambda: hr.train(task="pendulum"), r'train\(\["task=pendulum", \.\.\.\]\)'),
         (lambda: hr.train("task=pendulum"), r"\"task=pendulum\": give a list, \['task=pendulum'\]"),
+        (lambda: hr.train(Result, seed=0), "Result: give a list .* Gymnasium .* Agent"),
         (lambda: hr.load("pendulm"), r"load\('pendulm'\): no run folder, .* pendulum"),
     ],
 )

@@ -26,9 +26,9 @@ from jax import Array
 
 from hybrid_rl.envs.adapters.unstepped import Made, import_named, registered
 from hybrid_rl.envs.trial import check
-from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame
+from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame, kind_of
 from hybrid_rl.fields import Positive, part
-from hybrid_rl.protocols.contract import of_user, words
+from hybrid_rl.protocols.contract import of_user
 from hybrid_rl.types import Spec
 
 Numbers = np.ndarray | Array
@@ -295,7 +295,7 @@ def _fault(one: gymnasium.Env) -> str:
     action = (space.low / 2 + space.high / 2).astype(space.dtype)
     for (method, must), given in zip(GIVES.items(), (first, one.env.step(action)), strict=True):
         if not isinstance(given, tuple) or len(given) != len(must):
-            return f"{method}: returns {words(given)}; it must be ({', '.join(must)})"
+            return f"{method}: returns {kind_of(given)}; it must be ({', '.join(must)})"
         if (size := np.asarray(flatten(seen, given[0])).size) != (needs := flatdim(obs)):
             return f"{method}: returns obs of {size} numbers; its space has {needs}, {seen}"
     return ""

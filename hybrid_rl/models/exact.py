@@ -1,4 +1,4 @@
-"""x' = f(x, u) of an analytic environment: nothing is learned."""
+"""The dynamics x' = f(x, u) of an analytic environment: nothing is learned."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""x' ~ N(x + f(x, u), diag(s^2)): a learned one-step model (thesis appendix B).
+"""A learned one-step model, x' ~ N(x + f(x, u), diag(s^2)) (thesis appendix B).
 
 f = W_2 a(W_1 [x, u] + b_1) + b_2 by default; s is constant, or with `state_noise` a network's
 s(x) (thesis eq. 6.22). With `normalise`, the networks' inputs and outputs are divided by running

@@ -1,4 +1,4 @@
-"""x' = K s(x, u): a model that is linear in lifted coordinates x = z(o), a Koopman operator.
+"""A Koopman operator: x' = K s(x, u), linear in lifted coordinates x = z(o).
 
     s = (x, u) or (x, u, x_i u, ...),   K = [A B]
 

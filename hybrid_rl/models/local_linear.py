@@ -1,4 +1,4 @@
-"""e' = A e + B (u - u_0) around an equilibrium: nothing is learned.
+"""Known dynamics near an equilibrium, e' = A e + B (u - u_0): nothing is learned.
 
 e are the environment's local coordinates; A and B are its Jacobians (thesis section 6.3, Table
 C.1). The planning state is the observation, as for the other models.

@@ -222,6 +222,10 @@ class Trainable(Model, Protocol):
 
     members: int  # models in an ensemble, each with a batch of its own
 
+    @gives("key, spec -> params", "weights")
+    def init(self, key: Array, spec: Spec) -> dict[str, PyTree]:
+        """Initial parameters."""
+
     def observe(self, params: PyTree, obs: Array, next_obs: Array) -> PyTree:
         """Parameters with statistics updated by observations [B, o] and their successors."""
 
@@ -245,6 +249,10 @@ class LinearModel(Uncertain, Protocol):
     Parameters: "K" [n, r], and "spread" W [r, r], with W W' the covariance of each row of K in
     units of the noise's variance.
     """
+
+    @gives("key, spec -> params", "K", "spread")
+    def init(self, key: Array, spec: Spec) -> dict[str, PyTree]:
+        """Initial parameters."""
 
     def regressors(self, params: PyTree, x: Array, u: Array) -> Array:
         """s [r] at x [n] and u [m]."""

@@ -20,7 +20,8 @@ from typing import Any, NoReturn, TypeVar, get_args
 import jax
 import jax.numpy as jnp
 
-from hybrid_rl.errors import PartError, SourceOf
+from hybrid_rl.errors import PartError, SourceOf, kind_of
+from hybrid_rl.fields import plain
 from hybrid_rl.types import EnvState, Path, Spec
 
 Thing = TypeVar("Thing")
@@ -31,11 +32,11 @@ FLAGS = "terminated", "truncated"
 T = 5  # decisions of a path
 
 
-def gives(signature: str) -> Callable[[Thing], Thing]:
-    """Say what a method of a protocol takes and returns."""
+def gives(signature: str, *entries: str) -> Callable[[Thing], Thing]:
+    """Say what a method of a protocol takes and returns, and the entries that this has."""
 
     def mark(method: Any) -> Any:
-        method.gives = signature
+        method.gives, method.entries = signature, entries
         return method
 
     return mark
@@ -69,19 +70,17 @@ class Contract:
                 line = f"{self.source.at()} has no {name}{needs if self.name else ''}"
                 raise self.error(f"{line}; see protocols.{self.protocol.__name__}")
 
-    def check(self) -> dict[str, Any]:
-        """Raise PartError for a method that gives something else; the traces by method.
+    def check(self) -> None:
+        """Raise PartError for a method that gives something else.
 
         A method is left out if a value that it takes is not known.
         """
         self.check_members()
-        traces = {}
         for name, signature in signatures(self.protocol).items():
             if all(self._known(*term) for term in terms(signature.split("->")[0])):
-                traces[name] = self.trace(name)
-        return traces
+                self.trace(name)
 
-    def trace(self, name: str) -> Any:
+    def trace(self, name: str) -> None:
         """Compare what a method gives, traced by JAX."""
         takes, returns = map(terms, signatures(self.protocol)[name].split("->"))
         arguments = [self._value(*term) for term in takes]
@@ -91,16 +90,18 @@ class Contract:
             result = getattr(self.part, name)(*given)
             return jax.tree.map(self._of_path, result, is_leaf=inspect.isfunction)
 
-        traced = self.source.blamed(name, jax.jit(call, static_argnums=fixed).trace, *arguments)
-        result = traced.out_info
+        trace = jax.jit(call, static_argnums=fixed).trace
+        result = self.source.blamed(name, trace, *arguments).out_info
+        for entry in members(self.protocol)[name].entries:
+            if not (isinstance(result, Mapping) and entry in result):
+                self.refuse(name, f"returned no dict with an entry {entry!r}, which is learned")
         if len(returns) == 1:
             result = (result,)
         elif not isinstance(result, tuple) or len(result) != len(returns):
             must = ", ".join(of for of, _ in returns)
-            self.refuse(name, f"returned {words(result)}; it must be ({must})")
+            self.refuse(name, f"returned {kind_of(result)}; it must be ({must})")
         for (of, sizes), value in zip(returns, result, strict=True):
             self._judge(name, of, sizes, value)
-        return traced
 
     def refuse(self, method: str, line: str) -> NoReturn:
         """Raise PartError about a method."""
@@ -132,15 +133,13 @@ class Contract:
     def _judge(self, method: str, name: str, sizes: str | None, value: Any) -> None:
         """Raise PartError for a returned value of another shape or type."""
         if name == "metrics":
-            numbers = isinstance(value, Mapping)
-            numbers = numbers and all(of.endswith("[]") for of in leaves(value).values())
-            if not numbers:
-                got = leaves(value) if isinstance(value, Mapping) else words(value)
+            got = leaves(value) if isinstance(value, Mapping) else kind_of(value)
+            if isinstance(got, str) or not all(of.endswith("[]") for of in got.values()):
                 self.refuse(method, f"returned metrics {got}; it must be a dict of numbers")
             return
         if name == "env":
             if not isinstance(value, EnvState):
-                self.refuse(method, f"returned {words(value)}; it must be an EnvState")
+                self.refuse(method, f"returned {kind_of(value)}; it must be an EnvState")
             for part, form in (*FORM.items(), ("metrics", None)):
                 self._judge(method, part, form, getattr(value, part))
         elif sizes is not None:
@@ -159,7 +158,7 @@ class Contract:
         if shape != must or not jnp.issubdtype(value.dtype, kind):
             must = f"{'bool' if name in FLAGS else 'float32'}[{', '.join(map(str, must))}]"
             must += f", as spec.obs is {self.spec.obs}" if name == "obs" else ""
-            self.refuse(method, f"returned {name} {words(value)}; it must be {must}")
+            self.refuse(method, f"returned {name} {kind_of(value)}; it must be {must}")
 
     def _compare(self, method: str, name: str, value: Any) -> None:
         """Raise PartError if the value of this name was another one before."""
@@ -211,9 +210,9 @@ def parts(part: Any) -> Iterator[tuple[Any, str, Any, Any]]:
         return
     elif is_dataclass(part) and not isinstance(part, type):
         for of in fields(part):
-            value, kinds = getattr(part, of.name, None), [of.type]
-            for kind in kinds:  # of unions, tuples and annotations, what they are of
-                kinds += get_args(kind)
+            value, kinds = getattr(part, of.name, None), [plain(of.type)]
+            for kind in kinds:  # of unions and tuples, what they are of
+                kinds += map(plain, get_args(kind))
             known = [kind for kind in kinds if getattr(kind, "_is_protocol", False)]
             held = value if isinstance(value, list | tuple) else (value,)
             for inner in value.values() if isinstance(value, Mapping) else held:
@@ -234,16 +233,7 @@ def has_users(part: object) -> bool:
     return any(map(of_user, [*several, *(inner for _, _, _, inner in parts(part))]))
 
 
-def words(value: Any) -> str:
-    """float32[2], or the kind of a Python value."""
-    if getattr(value, "dtype", None) is not None:
-        return f"{value.dtype}{list(value.shape)}"
-    if isinstance(value, tuple):
-        return f"a tuple of {len(value)}"
-    return "None" if value is None else f"a {type(value).__name__}"
-
-
 def leaves(tree: Any) -> dict[str, str]:
     """Path of each leaf -> its type, such as float32[2]."""
     paths = jax.tree_util.tree_leaves_with_path(tree)
-    return {jax.tree_util.keystr(path): words(leaf) for path, leaf in paths}
+    return {jax.tree_util.keystr(path): kind_of(leaf) for path, leaf in paths}

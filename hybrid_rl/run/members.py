@@ -26,7 +26,7 @@ from hybrid_rl.run.logs.records import flatten_keys
 from hybrid_rl.settings import build as configuration
 from hybrid_rl.settings import words as overrides
 from hybrid_rl.settings.build import Run
-from hybrid_rl.settings.complete import require, source
+from hybrid_rl.settings.complete import found, require
 from hybrid_rl.settings.words import plain
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.loop import Axis, DifferError, Loop
@@ -44,7 +44,7 @@ def load(texts: Sequence[str] | DictConfig, config_dir: str | Path | None = None
     """The runs of overrides, or of a resolved configuration."""
     if isinstance(texts, DictConfig):
         return [Member(texts)]
-    words = texts if isinstance(texts, str | Mapping) else start.add_recipe(texts, config_dir)
+    words = start.add_recipe(texts, config_dir)
     return expand_sweep(configuration.compose_raw(words, config_dir), words)
 
 
@@ -75,7 +75,7 @@ def expand_sweep(config: DictConfig, texts: Sequence[str]) -> list[Member]:
         typed = [f"{key}={value}" for key, value in chosen.items()]
         own = config.copy()
         for key, value in chosen.items():
-            OmegaConf.update(own, source(raw, key), value)
+            OmegaConf.update(own, found(raw, key)[0], value)
         members.append(Member(configuration.resolve(own, [*texts, *typed]), chosen))
     return members
 

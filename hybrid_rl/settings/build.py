@@ -38,9 +38,8 @@ from hybrid_rl.settings.values import (
     random_decisions,
     set_defaults,
     time_limit,
-    whole,
 )
-from hybrid_rl.settings.words import forced, name, plain, typed_values
+from hybrid_rl.settings.words import forced, listed, name, plain, typed_values
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.history import acting as acting_in
@@ -90,9 +89,7 @@ def load(overrides: Sequence[str] = (), config_dir: str | Path | None = None) ->
 
 def compose_raw(overrides: Sequence[str], config_dir: str | Path | None = None) -> DictConfig:
     """What a run of these overrides reads, with its references; errors as `load`."""
-    if isinstance(overrides, str):
-        raise UsageError(f'"{overrides}": give a list, {overrides.split()}')
-    words = forced(overrides, groups(config_dir))
+    words = forced(listed(overrides), groups(config_dir))
     if config_dir is not None:
         own = search_path(config_dir)
         others = [text for text in words if name(text) == "hydra.searchpath"]
@@ -161,11 +158,8 @@ def build(config: DictConfig) -> Run:
     check(config)
     rounds = -(-config.total_steps // config.num_envs)
     remembered = config.get("begun", {}).get("remembered", 0)  # decisions of each environment
-    whole("replay.capacity", config.replay.capacity)
-    with _usage(config):
-        parts = _on_this_machine(config)
-        history = parts.episode.get("history", 1)
-        set_defaults(parts.learners, config.total_steps, history)
+    with _usage(config) as parts:
+        set_defaults(parts.learners, config.total_steps, parts.episode.get("history", 1))
         episode, controllers = _acting(parts)
         agent = Agent(
             episode,
@@ -191,8 +185,7 @@ def _acting(parts: DictConfig) -> tuple[Episode, dict[str, Controller]]:
 
 def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller], Imagination | None]:
     """The episodes of `config`, its controllers, and what learns before them."""
-    with _usage(config):
-        parts = _on_this_machine(config)
+    with _usage(config) as parts:
         episode, controllers = _acting(parts)
         before = _instantiate(parts.get("imagine"), "imagine")
     return episode, controllers, before
@@ -200,8 +193,8 @@ def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller], Imaginat
 
 def episodes(config: DictConfig) -> Episode:
     """The episodes of `config`, without its method."""
-    with _usage(config):
-        return _episode(_on_this_machine(config))
+    with _usage(config) as parts:
+        return _episode(parts)
 
 
 def _episode(parts: DictConfig) -> Episode:
@@ -268,13 +261,13 @@ def _instantiate(node: Any, where: str) -> Any:
 
 
 @contextmanager
-def _usage(config: DictConfig, who: str | None = None) -> Iterator[None]:
-    """Turn a ValueError that a part raises about its fields into a UsageError.
+def _usage(config: DictConfig, who: str | None = None) -> Iterator[DictConfig]:
+    """The sections on this machine; what a part says of its fields, a ValueError, is a UsageError.
 
     who: what needs a kind of environment that the task is not; None: the method.
     """
     try:
-        yield
+        yield _on_this_machine(config)
     except PartError:  # names its file
         raise
     except FieldError as error:

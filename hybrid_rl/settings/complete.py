@@ -22,23 +22,20 @@ CLASSES = {"episode": "hybrid_rl.training.episode.Episode"}  # of a section with
 CHOICES = ("settings", "experiment", "learning", "planner")  # groups without a key of their name
 
 
-def source(raw: Mapping[str, Any], path: str) -> str:
-    """The key that holds what `path` names: references on the way are followed."""
+def found(raw: Mapping[str, Any], path: str) -> tuple[str, Any]:
+    """The key of what `path` names, references on the way followed, and its value or LACKING."""
     at, node = "", raw
     for name in path.split("."):
         while isinstance(node, str) and (link := REFERENCE.fullmatch(node)):
-            at, node = link[1], select(raw, link[1])
+            at, node = found(raw, link[1])
         at = f"{at}.{name}" if at else name
         node = _item(node, name)
-    return at
+    return at, node
 
 
 def select(raw: Mapping[str, Any], path: str) -> Any:
     """The value at `path`, LACKING if there is none."""
-    node: Any = raw
-    for name in source(raw, path).split("."):
-        node = _item(node, name)
-    return node
+    return found(raw, path)[1]
 
 
 def _item(node: Any, name: str) -> Any:
@@ -57,17 +54,13 @@ def complete(
     a part has no such field; `require` refuses them then.
     """
     for path in typed:
-        above, _, name = source(raw, path).rpartition(".")
+        above, _, name = found(raw, path)[0].rpartition(".")
         node = select(raw, above) if above else raw
         if isinstance(node, dict) and name in node and name != TARGET:
             fields = _fields(node, above)
             if fields is not None and name not in fields:
                 del node[name]
-    read: dict[str, Any] = {}
-    for root in roots:
-        if root in raw:
-            _visit(raw, root, raw[root], read)
-    return _kept(raw, read)
+    return _kept(raw, keys(raw, roots, fill=True))
 
 
 def _fields(node: dict[str, Any], path: str) -> Mapping[str, inspect.Parameter] | None:
@@ -81,18 +74,16 @@ def _fields(node: dict[str, Any], path: str) -> Mapping[str, inspect.Parameter] 
     return None if any(field.kind is field.VAR_KEYWORD for field in takes.values()) else takes
 
 
-def keys(raw: dict[str, Any], roots: Iterable[str] = ()) -> dict[str, Any]:
-    """Every key at or below `roots`, and below those that they refer to, with its value."""
+def keys(raw: dict[str, Any], roots: Iterable[str] = (), fill: bool = False) -> dict[str, Any]:
+    """Key -> value at or below `roots`, and below what they refer to; fill: parts are complete."""
     read: dict[str, Any] = {}
     for root in roots or raw:
         if root in raw:
-            _visit(raw, root, raw[root], read, fill=False)
+            _visit(raw, root, raw[root], read, fill)
     return read
 
 
-def _visit(
-    raw: dict[str, Any], path: str, node: Any, read: dict[str, Any], fill: bool = True
-) -> None:
+def _visit(raw: dict[str, Any], path: str, node: Any, read: dict[str, Any], fill: bool) -> None:
     """Put a key, all below it and all that these refer to into `read`."""
     if path in read:
         return
@@ -103,7 +94,7 @@ def _visit(
     for name, value in listed.items() if isinstance(listed, dict) else ():
         _visit(raw, f"{path}.{name}", value, read, fill)
     for target in REFERENCE.findall(node) if isinstance(node, str) else ():
-        at = source(raw, target)
+        at = found(raw, target)[0]
         if fill and select(raw, at) is LACKING:  # perhaps a field that its part does not write
             above = at.rpartition(".")[0]
             holder = select(raw, above) if above else None
@@ -125,22 +116,19 @@ def _fill(raw: dict[str, Any], path: str, node: dict[str, Any]) -> None:
         if name in given:
             node[name] = given.pop(name)
         elif field.default is not field.empty:
-            node |= {name: _listed(field.default)} if _plain(field.default) else {}
+            value = _written(field.default)
+            node |= {} if value is LACKING else {name: value}
         elif not f"{path}.".startswith(f"{link}."):
             node[name] = f"${{{link}}}"  # `build.resolve` refuses what is lacking
     node |= given
 
 
-def _plain(value: Any) -> bool:
-    """Whether YAML can hold a value."""
+def _written(value: Any) -> Any:
+    """A value with lists for its tuples; LACKING if YAML cannot hold it."""
     if isinstance(value, tuple):
-        return all(map(_plain, value))
-    return value is None or type(value) in (bool, int, float, str)
-
-
-def _listed(value: Any) -> Any:
-    """A value with lists for its tuples."""
-    return [*map(_listed, value)] if isinstance(value, tuple) else value
+        entries = [*map(_written, value)]
+        return LACKING if any(entry is LACKING for entry in entries) else entries
+    return value if value is None or type(value) in (bool, int, float, str) else LACKING
 
 
 def _kept(node: Any, read: Mapping[str, Any], where: str = "") -> Any:

@@ -7,6 +7,7 @@ when a part is made.
 """
 
 import re
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
@@ -37,27 +38,24 @@ def search_path(config_dir: str | Path) -> str:
     return f"hydra.searchpath=['file://{folder}','pkg://hybrid_rl.thesis.conf']"
 
 
+def files(group: str, folders: Sequence[Path] = (THESIS, CONF)) -> dict[str, Path]:
+    """Name, with its folder -> the YAML file of an option, in folders like conf/."""
+    homes = [folder / group for folder in folders]
+    found = [(path, home) for home in homes for path in sorted(home.rglob("*.yaml"))]
+    return {path.relative_to(home).with_suffix("").as_posix(): path for path, home in found}
+
+
 def options(group: str) -> list[str]:
     """Names that a configuration group offers, with their folders."""
-    files = {
-        path.relative_to(conf / group).with_suffix("").as_posix()
-        for conf in (CONF, THESIS)
-        for path in (conf / group).rglob("*.yaml")
-    }
-    return sorted(files | choices(CONF).get(group, {}).keys())
+    return sorted({*files(group), *choices(CONF).get(group, ())})
 
 
 def groups(config_dir: str | Path | None = None) -> set[str]:
     """The names of the groups in conf/, and of those in a folder of the user."""
     folders = [CONF, THESIS, *([Path(config_dir).expanduser()] if config_dir else [])]
-    files = (path.relative_to(folder) for folder in folders for path in folder.rglob("*.yaml"))
-    found = {above.as_posix() for file in files for above in file.parents} - {"."}
+    paths = (path.relative_to(folder) for folder in folders for path in folder.rglob("*.yaml"))
+    found = {above.as_posix() for path in paths for above in path.parents} - {"."}
     return found | ROLES.keys()
-
-
-def file(group: str, name: str) -> Path:
-    """The YAML file of an option of the library or of the thesis."""
-    return next(filter(Path.is_file, (conf / group / f"{name}.yaml" for conf in (CONF, THESIS))))
 
 
 @cache

@@ -42,14 +42,14 @@ def check(config: DictConfig) -> None:
     parts.check(values)
     for key in ("task", "algo"):  # which become folders, or overrides
         if not NAME.fullmatch(str(config.get(key))):
-            line = "must be letters, digits, _, . and -"
-            raise UsageError(f"{key}={printable(config[key])}: {line}")
+            raise UsageError(f"{key}={printable(config[key])}: must be letters, digits, _, . and -")
     plans = TRUE_MODEL in {name for _, name in parts.targets(values)}
     if plans and issubclass(parts.part_class(config.env._target_), Unstepped):
         line = "plans on the true dynamics, and this task steps outside JAX; take one that learns"
         raise UsageError(f"task={config.task}: {config.algo} {line}")
     for key in COUNTS:
         whole(key, config[key])
+    whole("replay.capacity", config.replay.capacity)
     whole("num_envs", config.num_envs, 1, STEPS - 1)
     whole("total_steps", config.total_steps, 1, STEPS - config.num_envs)  # with the last round
     whole("seed", config.seed, 0, SEEDS - config.num_seeds)

@@ -5,12 +5,28 @@ defaults of their classes. `settings.complete.require` refuses a key that nothin
 """
 
 import re
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override, Quote, QuotedString
 from omegaconf import OmegaConf
+
+from hybrid_rl.errors import NO_WORDS, UsageError
+
+
+def listed(texts: Any) -> list[str]:
+    """The words of a command; UsageError for anything else, such as an environment."""
+    several = isinstance(texts, Iterable) and not isinstance(texts, str | Mapping)
+    words = [*texts] if several else [texts]
+    flaws = [word for word in words if not isinstance(word, str)]
+    if isinstance(texts, str):
+        line = f'"{texts}": give a list, {texts.split()}'
+    elif flaws:
+        line = f"{getattr(flaws[0], '__name__', type(flaws[0]).__name__)}: {NO_WORDS}"
+    else:
+        return words
+    raise UsageError(line)
 
 
 def parse(texts: Iterable[str]) -> list[Override]:
@@ -31,7 +47,7 @@ def name(text: str) -> str:
 
 def typed_values(texts: Iterable[str]) -> dict[str, str]:
     """Overrides as key -> value, as they were typed."""
-    return {name(text): text.partition("=")[2] for text in texts}
+    return {name(text): text.partition("=")[2] for text in listed(texts)}
 
 
 def quoted(value: str) -> str:

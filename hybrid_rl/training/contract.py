@@ -120,11 +120,11 @@ def _kind(learner: Any) -> type:
 def _contracts(whole: Any, spec: Spec) -> Iterator[Contract]:
     """The contract of each part in these parts with the protocol of its field; inner ones first.
 
-    A field of the user's without a type has the protocol of its name.
+    A user's field without a type has the protocol of its name. Mixtures and worlds have none.
     """
     for owner, name, protocol, part in reversed([*parts(whole)]):
         protocol = protocol or (ROLES.get(name) if of_user(owner) else None)
-        if protocol is not None and getattr(part, "split", None) is None:  # else its parts are
+        if protocol is not None and not any(getattr(part, of, None) for of in ("split", "reset")):
             yield Contract(part, protocol, spec, owner=owner, name=name)
 
 

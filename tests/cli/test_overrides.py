@@ -32,8 +32,8 @@ def test_what_is_read_is_followed_through_references():
 
 
 def test_a_key_is_found_where_its_value_is():
-    assert complete.source(RAW, "loop.part.inner.gain") == "chosen.inner.gain"
-    assert complete.source(RAW, "idle.part") == "idle.part"
+    assert complete.found(RAW, "loop.part.inner.gain")[0] == "chosen.inner.gain"
+    assert complete.found(RAW, "idle.part")[0] == "idle.part"
     assert complete.select(RAW, "loop.part.nothing") is complete.LACKING
 
 

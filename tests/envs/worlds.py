@@ -13,14 +13,14 @@ from omegaconf import OmegaConf
 from hybrid_rl.envs.mujoco import mjcf, scenery
 from hybrid_rl.envs.panda_stack import PandaStack
 from hybrid_rl.envs.sawyer_push import TIP, SawyerPush
-from hybrid_rl.settings.groups import file, options
+from hybrid_rl.settings.groups import files, options
 from hybrid_rl.types import Params
 
 DECISIONS = 20
 FROM_OTHERS = {"gymnasium", "playground", "robot", "online"}  # tests of their own
 OWN_TEST = {"sawyer_probe"}  # test_sawyer_probe.py
 TASKS: dict[str, Any] = {
-    name: get_class(OmegaConf.load(file("task", name)).env._target_)
+    name: get_class(OmegaConf.load(files("task")[name]).env._target_)
     for name in options("task")
     if name not in FROM_OTHERS | OWN_TEST
 }

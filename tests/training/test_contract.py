@@ -17,7 +17,9 @@ from hybrid_rl.data.replay import Replay
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.errors import PartError, UsageError
 from hybrid_rl.learners.least_squares import LeastSquares
+from hybrid_rl.learners.model import ModelLearner
 from hybrid_rl.learners.sac import SAC
+from hybrid_rl.models.gaussian import Gaussian
 from hybrid_rl.models.koopman import Koopman
 from hybrid_rl.objectives.predicted_return import PredictedReturn
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
@@ -106,6 +108,13 @@ class Wide(Line):
         return super().step(params, x, u)[None]
 
 
+class Bare(Gaussian):
+    """Its parameters are the weights, and not an entry of a dict."""
+
+    def init(self, key, spec):
+        return super().init(key, spec)["weights"]
+
+
 def check(planner: Any = Planner(), learner: Any = Fit()) -> None:
     learners = {"model": learner} if learner else {}
     hr.Agent(hr.Episode(Pendulum(), 20), planner, learners, Replay().within(9, 1)).check()
@@ -137,15 +146,10 @@ class Cost:
         return lambda path: path.x[:, 0] if self.wrong else path.x[:, 0].sum(), memory
 
 
-class Free:
-    """A reward without outcome."""
-
-
 def planning(objective: Any) -> SamplingController:
     return SamplingController(Line(), objective, NoiseProposal(), samples=4, horizon=3)
 
 
-FREE: Any = Free()
 NOTHING = "nothing, init gave float32[3, 4]; both must be equal"
 FAULTY = [  # a learner or a controller, the line after the file
     (Fit(data="replay"), 'Fit: data is \'replay\'; it must be "uniform" or "latest"'),
@@ -164,7 +168,8 @@ FAULTY = [  # a learner or a controller, the line after the file
     (Planner(wrong="state"), "Planner.act: returned state[0] float32[0], init gave float32[1]; b"),
     (LeastSquares(Koopman(Observables(jnp.sum))), "Observables.__call__: returned z float32[]; it"),
     (LeastSquares(Koopman(Observables(list))), "Observables.__call__: returned z a list; it must"),
-    (planning(PredictedReturn(FREE)), "Free has no outcome, which PredictedReturn.reward needs"),
+    (ModelLearner(Bare()), "Bare.init: returned no dict with an entry 'weights', which is learned"),
+    (planning(PredictedReturn(Cost())), "Cost has no outcome, which PredictedReturn.reward needs"),
     (planning(Cost(wrong=True)), "Cost.prepare: returned J float32[6]; it must be float32[]"),
 ]
 
@@ -172,7 +177,7 @@ FAULTY = [  # a learner or a controller, the line after the file
 @pytest.mark.parametrize(("part", "words"), FAULTY, ids=[words for _, words in FAULTY])
 def test_what_is_wrong_is_one_line(part, words):
     with pytest.raises(PartError) as error:
-        check(**{"learner" if isinstance(part, Fit | LeastSquares) else "planner": part})
+        check(**{"learner" if hasattr(part, "update") else "planner": part})
     line = str(error.value)
     assert re.match(r"\S*test_contract\.py:\d+: |hybrid_rl\.", line)
     assert words in line

@@ -11,7 +11,7 @@ from omegaconf import DictConfig, OmegaConf
 from hybrid_rl import list as listed
 from hybrid_rl.fields import Must
 from hybrid_rl.settings import build as config
-from hybrid_rl.settings.groups import THESIS, file, options
+from hybrid_rl.settings.groups import THESIS, files, options
 
 OF_TASK = {  # methods that need another task
     **dict.fromkeys(("computed_torque", "joint_pd"), "sawyer_torque"),
@@ -78,7 +78,7 @@ def needs(composed: DictConfig) -> str:
 @pytest.mark.parametrize("algo", options("algo"))
 def test_a_comment_says_which_tasks_the_parts_of_a_method_need(algo: str) -> None:
     composed = config.load([f"task={of_task(algo)}", f"algo={algo}"])
-    assert listed.mark(file("algo", algo)) == needs(composed)
+    assert listed.mark(files("algo")[algo]) == needs(composed)
 
 
 @pytest.mark.turns(2)
@@ -106,13 +106,13 @@ def test_a_name_of_the_thesis_is_a_method_of_the_library_with_a_value(name: str)
 
 def methods_of(experiment: str) -> list[list[str]]:
     """The overrides for each method that an experiment compares; else for its own method."""
-    node = OmegaConf.load(file("experiment", experiment))
+    node = OmegaConf.load(files("experiment")[experiment])
     inherited = {str(k): v for default in node.defaults for k, v in _pairs(default)}
-    files = [node]
+    nodes = [node]
     if "/settings@_global_" in inherited:
         name = inherited["/settings@_global_"]
-        files.append(OmegaConf.load(file("settings", name)))
-    lists = [OmegaConf.select(each, "hydra.sweeper.params.algo") for each in files]
+        nodes.append(OmegaConf.load(files("settings")[name]))
+    lists = [OmegaConf.select(each, "hydra.sweeper.params.algo") for each in nodes]
     names = next(filter(None, lists), "")
     return [[f"algo={name}"] for name in names.split(",")] if names else [[]]
 
