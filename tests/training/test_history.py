@@ -24,8 +24,7 @@ from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.history import HistoryController, acting, informed
 from hybrid_rl.types import Spec
 
-ENV, K = Pendulum(), 3
-KEY = jax.random.key(0)
+ENV, K, KEY = Pendulum(), 3, jax.random.key(0)
 close = partial(np.testing.assert_allclose, rtol=1e-4, atol=1e-5)
 NOT = ["reward_model.ends=null", "model_learner.reward=null"]
 
