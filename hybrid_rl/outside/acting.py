@@ -21,7 +21,7 @@ from hybrid_rl.training.loop import Axis
 from hybrid_rl.types import Clock, EnvState, Params, Spec
 
 NONE: Mapping[str, Array] = MappingProxyType({})
-Told = np.ndarray | Array  # by a world outside
+Numbers = np.ndarray | Array  # of a world outside
 
 
 class Acting:
@@ -185,7 +185,7 @@ class TrainedPolicy:
 
 
 def next_state(
-    env: EnvState, obs: Told, reward: Told, terminated: Told, truncated: Told
+    env: EnvState, obs: Numbers, reward: Numbers, terminated: Numbers, truncated: Numbers
 ) -> EnvState:
     """The states [E] after a decision at `env` [E], of which a world outside tells the others."""
     clock = Clock(env.clock.decision + 1, env.clock.total + reward)

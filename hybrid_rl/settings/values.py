@@ -56,7 +56,7 @@ def check(config: DictConfig) -> None:
     for mode in [None] if config.eval_modes is None else config.eval_modes:
         one_of("eval_modes", mode, MODES)
     for key, known in KNOWN.items():
-        one_of(key, config.get(key), known)
+        one_of(key, config[key], known)
 
 
 def time_limit(env: External | Robot, given: Mapping[str, Any]) -> dict[str, int]:
