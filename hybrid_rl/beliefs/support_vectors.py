@@ -75,9 +75,8 @@ class SupportVectors:
     def joined(self, machine: Machine, s: Array, label: Array) -> Machine:
         """The machine with a point s [d] of `label` [], not yet optimised.
 
-        A point closer than `apart` to one with the same label adds 1 to that one's weight. So does
-        any point, to the nearest of its label, where the machine is full; if there is none, it is
-        dropped.
+        A point closer than `apart` to one with the same label adds 1 to the weight of that one. In
+        a full machine every point adds to the nearest of its label, and is dropped without one.
         """
         distance = jnp.sqrt(jnp.sum((machine.s - s[None]) ** 2, -1))
         distance = jnp.where(machine.label == label, distance, jnp.inf)

@@ -64,15 +64,15 @@ class Gaussian:
 
     def observe(self, params: dict[str, Any], obs: Array, next_obs: Array) -> dict[str, Any]:
         """Parameters with statistics updated by observations [B, o] and their successors."""
+        new = params["change"].mean.size
+        if self.circles:
+            params = {**params, "circles": circles.update(params["circles"], next_obs[:, :new])}
         if not self.normalise:
             return params
-        state, new = statistics.update(params["state"], obs), params["change"].mean.size
+        state = statistics.update(params["state"], obs)
         change = next_obs[:, :new] - obs[:, :new]
         change = statistics.update(params["change"], change, state.magnitude[:new])
-        params = {**params, "state": state, "change": change}
-        if self.circles:
-            params["circles"] = circles.update(params["circles"], next_obs[:, :new])
-        return params
+        return {**params, "state": state, "change": change}
 
     def lift(self, params: dict[str, Any], obs: Array) -> Array:
         """The observation [o] itself."""

@@ -10,6 +10,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
+from jax.typing import ArrayLike
 
 from hybrid_rl.core import batching
 from hybrid_rl.errors import UsageError, one_line
@@ -21,7 +22,6 @@ from hybrid_rl.training.loop import Axis
 from hybrid_rl.types import Clock, EnvState, Params, Spec
 
 NONE: Mapping[str, Array] = MappingProxyType({})
-Numbers = np.ndarray | Array  # of a world outside
 
 
 class Acting:
@@ -185,7 +185,7 @@ class TrainedPolicy:
 
 
 def next_state(
-    env: EnvState, obs: Numbers, reward: Numbers, terminated: Numbers, truncated: Numbers
+    env: EnvState, obs: ArrayLike, reward: ArrayLike, terminated: ArrayLike, truncated: ArrayLike
 ) -> EnvState:
     """The states [E] after a decision at `env` [E], of which a world outside tells the others."""
     clock = Clock(env.clock.decision + 1, env.clock.total + reward)
