@@ -57,13 +57,11 @@ class Runner(Body):
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""
         key_pos, key_vel = jax.random.split(key)
-        upright = jnp.asarray(self._body.model.qpos0, jnp.float32)
+        upright, size = jnp.asarray(self._body.model.qpos0, jnp.float32), (self._body.model.nv,)
         away = jax.random.uniform(key_pos, upright.shape, jnp.float32, -self.spread, self.spread)
-        size = (self._body.model.nv,)
+        qvel = jax.random.uniform(key_vel, size, jnp.float32, -self.spread, self.spread)
         if self.gaussian:
             qvel = 0.1 * jax.random.normal(key_vel, size, jnp.float32)
-        else:
-            qvel = jax.random.uniform(key_vel, size, jnp.float32, -self.spread, self.spread)
         return self._state(self._body.reset(upright + away, qvel))
 
     def step(self, state: EnvState, action: Array) -> EnvState:

@@ -14,10 +14,12 @@ Source: Gymnasium's documentation, "Env", "AutoresetMode".
 import multiprocessing
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from dataclasses import dataclass, field
 from functools import cache, cached_property
 from typing import Any, NamedTuple
 
 import gymnasium
+import jax
 import numpy as np
 from gymnasium.spaces import Box, Dict, Space, flatdim, flatten
 from gymnasium.vector import AsyncVectorEnv, AutoresetMode, SyncVectorEnv
@@ -28,6 +30,7 @@ from hybrid_rl.envs.adapters.unstepped import Made, import_named, registered
 from hybrid_rl.envs.trial import check
 from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame, kind_of
 from hybrid_rl.fields import Positive, part
+from hybrid_rl.protocols import Goal
 from hybrid_rl.protocols.contract import of_user
 from hybrid_rl.types import Spec
 
@@ -96,9 +99,8 @@ class External(Made):
 
     def one(self, render_mode: str | None = None) -> gymnasium.Env:
         """A copy of the environment, with flat observations and without a time limit of its own."""
-        given: dict[str, Any] = {**(self.kwargs or {})}
-        if render_mode is not None:
-            given["render_mode"] = render_mode
+        shown = {} if render_mode is None else {"render_mode": render_mode}
+        given: dict[str, Any] = {**(self.kwargs or {}), **shown}
         if not self.make:
             options: dict[str, Any] = {"disable_env_checker": True, "max_episode_steps": -1}
             return FlattenObservation(gymnasium.make(registered(self.id), **options, **given))
@@ -106,12 +108,6 @@ class External(Made):
         if not isinstance(env, gymnasium.Env):
             raise UsageError(f"env.make={self.name}: returns {env!r}, which is no gymnasium.Env")
         return FlattenObservation(env)
-
-    def copies(
-        self, seeds: Sequence[int], steps: int, repeat: int = 1, render_mode: str | None = None
-    ) -> "Copies":
-        """One copy for each seed; steps: decisions until the time limit of each."""
-        return Copies(self, seeds, steps, repeat, render_mode)
 
 
 class Outcome(NamedTuple):
@@ -124,16 +120,17 @@ class Outcome(NamedTuple):
     following: Numbers  # [N, o] float32, those of a new episode where one ended
 
 
+@dataclass
 class Copies:
-    """N copies of an environment, which step side by side."""
+    """N copies of an environment, which step side by side; `goal` pays each decision, once."""
 
-    success: np.ndarray | None = None  # [N], if the last decision's infos say so
-
-    def __init__(
-        self, env: External, seeds: Sequence[int], steps: int, repeat: int, render_mode: str | None
-    ) -> None:
-        self.env, self.steps, self.repeat, self.render_mode = env, steps, repeat, render_mode
-        self._seeds: list[Any] = list(map(int, seeds))
+    env: External
+    seeds: Sequence[int | None]
+    steps: int  # decisions until the time limit of each
+    repeat: int = 1
+    render_mode: str | None = None
+    goal: Goal | None = None
+    success: np.ndarray | None = field(default=None, init=False)  # [N], if infos say so
 
     def _one(self) -> gymnasium.Env:
         """A copy that takes decisions, of which `steps` make an episode."""
@@ -141,35 +138,43 @@ class Copies:
 
     @cached_property
     def _vector(self) -> Any:
-        makers = [self._one for _ in self._seeds]
+        makers = [self._one for _ in self.seeds]
         if self.env.apart:
             return AsyncVectorEnv(makers, context="spawn", autoreset_mode=AutoresetMode.DISABLED)
         return SyncVectorEnv(makers, copy=False, autoreset_mode=AutoresetMode.DISABLED)
 
+    @cached_property
+    def _reward_of(self) -> Callable[..., Array]:
+        assert self.goal is not None
+        return jax.jit(jax.vmap(self.goal.reward_of))
+
     def reset(self) -> np.ndarray:
         """The first observations [N, o]; the first call seeds the environments."""
-        obs = self._observed("reset", lambda: self._vector.reset(seed=self._seeds))[0]
-        self._seeds = [None for _ in self._seeds]  # a seed at each reset would repeat one start
-        return obs
+        self._obs = self._observed("reset", lambda: self._vector.reset(seed=self.seeds))[0]
+        self.seeds = [None for _ in self.seeds]  # a seed at each reset would repeat one start
+        return self._obs
 
     def step(self, u: np.ndarray) -> Outcome:
         """Actions u [N, m] in [-1, 1]; where an episode ends, another one begins."""
         low, high = self.env.bounds
-        share = (np.clip(np.asarray(u, np.float32), -1, 1) + 1) / 2
+        u = np.clip(np.asarray(u, np.float32), -1, 1)
         space = self.env.known.space
-        actions = (low + share * (high - low)).reshape(-1, *space.shape)
+        actions = (low + (u + 1) / 2 * (high - low)).reshape(-1, *space.shape)
         actions = (np.rint(actions) if space.dtype.kind in "iu" else actions).astype(space.dtype)
         obs, paid, ended, cut, infos = self._observed("step", lambda: self._stepped(actions))
+        if self.goal is not None:
+            given = jax.device_put((self._obs, u, obs), jax.devices("cpu")[0])
+            paid = np.asarray(self._reward_of(*given))
         if not np.isfinite(paid).all():
             raise WorldError(f"{self.env.name}: step: gives a reward that is not finite")
-        given = [np.asarray(infos[name]) for name in FLAGS if name in infos]
-        self.success = given[0].astype(bool).reshape(len(paid), -1).any(1) if given else None
-        following = obs
+        flags = [np.asarray(infos[name]) for name in FLAGS if name in infos]
+        self.success = flags[0].astype(bool).reshape(len(paid), -1).any(1) if flags else None
+        self._obs = obs
         if (done := ended | cut).any():
             options = {"reset_mask": done}
             fresh = self._observed("reset", lambda: self._vector.reset(options=options))[0]
-            following = np.where(done[:, None], fresh, obs)
-        return Outcome(obs, np.asarray(paid, np.float32), ended, cut & ~ended, following)
+            self._obs = np.where(done[:, None], fresh, obs)
+        return Outcome(obs, np.asarray(paid, np.float32), ended, cut & ~ended, self._obs)
 
     def picture(self) -> np.ndarray:
         """The first environment [height, width, 3] (uint8), with render_mode="rgb_array"."""

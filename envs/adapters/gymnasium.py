@@ -131,9 +131,8 @@ class GymnasiumEnv(gymnasium.Env):
 
     def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, Info]:
         """Observation [o], reward, terminated, truncated, metrics after action [m]."""
-        action = np.asarray(action, np.float32)
-        self._packed = packed = self._step(self._packed, action)
-        obs, reward, terminated, info = self._read(packed)
+        self._packed = self._step(self._packed, np.asarray(action, np.float32))
+        obs, reward, terminated, info = self._read(self._packed)
         self._count += 1
         truncated = 0 < self.steps <= self._count and not terminated
         return obs, reward, terminated, truncated, info

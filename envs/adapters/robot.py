@@ -115,5 +115,4 @@ class Robot(Made):
         try:
             return self.kind(**(self.kwargs or {}))
         except FAULTS as error:
-            line = blame(error)
-            raise UsageError(f"env.make={self.name}: {line}") from error
+            raise UsageError(f"env.make={self.name}: {blame(error)}") from error

@@ -123,10 +123,8 @@ class Canvas:
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, self._context)
         self._data.qpos[:] = qpos
         mujoco.mj_forward(self.model, self._data)
-        every, option = mujoco.mjtCatBit.mjCAT_ALL, mujoco.MjvOption()
-        mujoco.mjv_updateScene(
-            self.model, self._data, option, None, self._camera, every, self._scenery
-        )
+        seen = self.model, self._data, mujoco.MjvOption(), None, self._camera
+        mujoco.mjv_updateScene(*seen, mujoco.mjtCatBit.mjCAT_ALL, self._scenery)
         mujoco.mjr_render(self._view, self._scenery, self._context)
         picture = np.empty((self._view.height, self._view.width, 3), np.uint8)
         mujoco.mjr_readPixels(picture, None, self._view, self._context)

@@ -18,7 +18,7 @@ from hybrid_rl.envs.mujoco.offscreen import Canvas
 from hybrid_rl.envs.mujoco.scenery import check_drawable, pose_of, scene_of
 from hybrid_rl.files.atomic import replacing
 from hybrid_rl.outside.acting import TrainedPolicy
-from hybrid_rl.outside.host_loop import seed_of
+from hybrid_rl.outside.host_loop import copies_of, seed_of
 from hybrid_rl.run.logs.progress import Progress
 from hybrid_rl.training.rollout import evaluation_keys, rollout
 
@@ -175,7 +175,7 @@ def draw_outside(
     policy = TrainedPolicy(world.spec, controller, params)
     seeds = [seed_of(*map(int, jax.random.key_data(key)))]
     offscreen.lend()
-    copies = world.env.copies(seeds, world.steps, world.action_repeat, "rgb_array")
+    copies = copies_of(world, seeds, "rgb_array")
     obs, total, pictures = copies.reset()[0], 0.0, [copies.picture()]
     for _ in range(steps or world.steps):
         got = copies.step(policy(obs)[None])

@@ -50,7 +50,7 @@ class ModelBased(SoftActorCritic):
     steps: Natural = 5  # H; 0: the policy maximises the critic at the start states, as in SAC
     value_steps: int | None = None  # of the H decisions, at whose states the critic learns; None: H
     branch_steps: Natural = 20  # longest branch [decisions]; 0: starts at the states of the batch
-    branch_margin: Positive | None = None  # [ranges] beyond data; None: no end, or 3 with history
+    branch_margin: Positive | None = None  # [ranges] beyond data; None: no end
     change_limit: Positive = 100.0  # of an imagined state, in largest real changes: none overflows
     branch_memory: Natural = 25_600  # imagined transitions that are kept, as whole batches;
     # fewer than one: they are drawn for each update

@@ -221,10 +221,11 @@ class HostEvaluator:
         return {name: values.reshape(keys.shape) for name, values in found.items()}
 
 
-def copies_of(episode: Episode, seeds: Sequence[int]) -> Copies:
+def copies_of(episode: Episode, seeds: Sequence[int], render_mode: str | None = None) -> Copies:
     """A copy of the episode's environment for each seed."""
     assert isinstance(episode.env, External)
-    return episode.env.copies(seeds, episode.steps, episode.action_repeat)
+    given = episode.env, seeds, episode.steps, episode.action_repeat
+    return Copies(*given, render_mode, episode.reward)
 
 
 def seed_of(*numbers: int) -> int:

@@ -36,7 +36,7 @@ from hybrid_rl.settings.values import (
     SECTIONS,
     check,
     random_decisions,
-    set_defaults,
+    set_schedules,
     time_limit,
 )
 from hybrid_rl.settings.words import forced, listed, name, plain, typed_values
@@ -159,7 +159,7 @@ def build(config: DictConfig) -> Run:
     rounds = -(-config.total_steps // config.num_envs)
     remembered = config.get("begun", {}).get("remembered", 0)  # decisions of each environment
     with _usage(config) as parts:
-        set_defaults(parts.learners, config.total_steps, parts.episode.get("history", 1))
+        set_schedules(parts.learners, config.total_steps)
         episode, controllers = _acting(parts)
         agent = Agent(
             episode,

@@ -27,7 +27,6 @@ SECTIONS = ("env", "episode", "replay", "controllers", "learners")
 PAID = ("reward", "constraint")  # what the world pays and asks for; a run may lack the keys
 KNOWN = {"precision": PRECISIONS, "physics": IMPLEMENTATIONS, "logger": (None, "wandb")}
 TRUE_MODEL = "hybrid_rl.models.world.World"
-MARGIN = 3.0  # of branches with a history, in ranges of real states
 STEPS = 2**31  # decisions, fewer of which are counted
 SEEDS = 2**32  # distinct seeds of JAX's generator
 
@@ -61,9 +60,9 @@ def check(config: DictConfig) -> None:
 
 def time_limit(env: External | Robot, given: Mapping[str, Any]) -> dict[str, int]:
     """The time limit of an environment on the host [decisions], if `given` has none."""
-    own = ("lag",) * isinstance(env, Robot)
+    own = ("lag", "reward") if isinstance(env, Robot) else ()
     noise = "sensor_noise", "action_noise"
-    for key in ("delay", "jitter", "loss", *own, *noise, "observe", "randomise", *PAID):
+    for key in ("delay", "jitter", "loss", *own, *noise, "observe", "randomise", "constraint"):
         value = given.get(key)
         if isinstance(value, dict):  # of names and ranges
             value = {name: each for name, each in value.items() if each is not None}
@@ -89,11 +88,9 @@ def random_decisions(values: Mapping[str, Any], given: Mapping[str, str]) -> Any
     return min(random, (total + 1) // 2) if type(random) is type(total) is int else random
 
 
-def set_defaults(learners: DictConfig, decisions: int, history: int) -> None:
-    """Give schedules the run's length, and branches with a history a margin, if they lack one."""
+def set_schedules(learners: DictConfig, decisions: int) -> None:
+    """Give schedules that lack one the run's length."""
     for learner in filter(None, learners.values()):
-        if history > 1 and learner.get("branch_margin", 0) is None:
-            learner.branch_margin = MARGIN
         schedule = learner.get("schedule")
         if schedule is not None and schedule.get("decisions", decisions) is None:
             schedule.decisions = decisions

@@ -21,12 +21,6 @@ SPEC = Spec(obs=2, act=1, dt=0.1)
 RNG = np.random.default_rng(0)
 
 
-def linear_params(A: np.ndarray, B: np.ndarray) -> dict:
-    """Parameters of a linear Koopman model."""
-    r = A.shape[1] + B.shape[1]
-    return {"features": {}, "K": jnp.asarray(np.hstack([A, B])), "spread": jnp.eye(r)}
-
-
 def linearised(dynamics, x, u):
     """Derivatives A and B of dynamics."""
     return (np.asarray(m) for m in jax.jit(jax.jacobian(dynamics, (0, 1)))(x, u))

@@ -12,7 +12,7 @@ from gymnasium.spaces import Box, Dict, Discrete
 from gymnasium.wrappers import OrderEnforcing, TimeLimit
 from hosted import Count, counting
 
-from hybrid_rl.envs.adapters.external import External
+from hybrid_rl.envs.adapters.external import Copies, External
 from hybrid_rl.errors import UsageError, WorldError
 from hybrid_rl.types import Spec
 
@@ -28,7 +28,7 @@ STEPS = 5  # decisions of an episode
     ],
 )
 def test_what_goes_wrong_in_an_environment_is_one_line(fail, line):
-    copies = counting(fail=fail).copies([1, 2], STEPS)
+    copies = Copies(counting(fail=fail), [1, 2], STEPS)
     copies.reset()
     with pytest.raises(WorldError, match=re.escape(line)) as error:
         list(map(copies.step, np.zeros((3, 2, 1))))
@@ -64,7 +64,7 @@ def test_an_action_of_whole_numbers_is_the_nearest():
     class Whole(Count):
         action_space = Box(-2, 4, (1,), np.int32)
 
-    copies = External(make=Whole).copies([0], STEPS)
+    copies = Copies(External(make=Whole), [0], STEPS)
     copies.reset()
     rewards = [copies.step(np.array([[u]])).reward[0] for u in (0.9, -0.9, 0.0)]
     assert rewards == [4, -2, 1]
@@ -106,7 +106,7 @@ def test_an_id_without_a_version_has_the_time_limit_of_the_newest():
 
 
 def test_a_picture_of_an_environment_that_draws_none_is_one_line():
-    copies = counting().copies([0], STEPS)
+    copies = Copies(counting(), [0], STEPS)
     copies.reset()
     with pytest.raises(WorldError, match="render: NotImplementedError; for a video"):
         copies.picture()

@@ -17,7 +17,7 @@ from hosted import Count, counting
 
 from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.data.replay import unpack
-from hybrid_rl.envs.adapters.external import External
+from hybrid_rl.envs.adapters.external import Copies, External
 from hybrid_rl.envs.adapters.gymnasium import GymnasiumEnv
 from hybrid_rl.outside.host_loop import HostEvaluator, HostLoop, seed_of
 from hybrid_rl.run import exported
@@ -132,7 +132,7 @@ def test_a_resumed_run_marks_where_its_episode_was_cut():
 
 def test_copies_step_as_in_gymnasiums_vector():
     """Bit by bit, where only the second episode is cut; of Pendulum-v1, whose starts are drawn."""
-    copies = External(id="Pendulum-v1").copies([1, 2], 3)
+    copies = Copies(External(id="Pendulum-v1"), [1, 2], 3)
     one = partial(gymnasium.make, "Pendulum-v1", max_episode_steps=-1)
     vector = SyncVectorEnv([one, one], autoreset_mode=AutoresetMode.DISABLED)
     obs, _ = vector.reset(seed=[1, 2])
@@ -160,16 +160,24 @@ class Drawn(Count):
         return *rest, {**info, "is_success": np.float32(self.time == 3)}
 
 
+@dataclass(frozen=True)
+class Later:
+    """Pays x + 10 u + 100 x', x the step of the episode."""
+
+    def reward_of(self, x: jax.Array, u: jax.Array, after: jax.Array) -> jax.Array:
+        return x[1] + 10 * u[0] + 100 * after[1]
+
+
 def test_an_evaluation_pays_each_episode_until_its_own_end():
-    """Also where the others of the call go on."""
-    episode = Episode(External(make=Drawn), 9)
+    """By a goal, also where the others of the call go on."""
+    episode = Episode(External(make=Drawn), 9, reward=Later())
     keys = jax.random.split(jax.random.key(2), (2, 4))
     evaluator = HostEvaluator(episode, ConstantController(0.5), Params(), keys)
     seeds = [seed_of(*map(int, row)) for row in jax.random.key_data(keys).reshape(-1, 2)]
     lengths = [1 + Drawn().reset(seed=seed)[0][0] for seed in seeds]
     assert {3} < set(lengths)
     found = {name: values.ravel() for name, values in evaluator(Params(), keys).items()}
-    np.testing.assert_allclose(found["return"], np.float32(lengths) * 2.5)
+    np.testing.assert_allclose(found["return"], [{2: 311, 3: 618, 4: 1026}[n] for n in lengths])
     assert found["success"].tolist() == [length == 3 for length in lengths]
 
 
@@ -177,7 +185,7 @@ def test_an_evaluation_pays_each_episode_until_its_own_end():
 def test_repeats_of_an_action_end_with_the_episode_of_their_own_copy(processes):
     """A copy beside others, whose episodes end between its repeats, makes all of its own."""
     env, seeds, u = External(make=Drawn, processes=processes), [1, 2], np.zeros((2, 1))
-    whole, each = env.copies(seeds, 9, 3), [External(make=Drawn).copies([s], 9, 3) for s in seeds]
+    whole, each = Copies(env, seeds, 9, 3), [Copies(External(make=Drawn), [s], 9, 3) for s in seeds]
     np.testing.assert_array_equal(whole.reset(), np.concatenate([one.reset() for one in each]))
     rewards = []
     for _ in range(3):
@@ -216,7 +224,7 @@ def test_a_trained_policy_acts_in_the_units_of_its_environment():
     """What `step` of the user's loop gets from it, or from its program, is what a run gave it."""
     episode, modes = Episode(counting(), STEPS), {"full": Rising(0.5, 1.0)}  # beyond the bounds
     trained = Trained("count", episode, modes, Params(), (0,), 0, ())
-    policy, copies = trained.policy(), episode.env.copies([0], STEPS)
+    policy, copies = trained.policy(), Copies(episode.env, [0], STEPS)
     copies.reset()
     made = exported.program(episode.spec, modes["full"], Params(), span=trained.span)
     state, key = np.zeros(made.in_avals[1].shape, np.uint32), np.zeros(2, np.uint32)
@@ -231,7 +239,7 @@ def test_a_trained_policy_acts_in_the_units_of_its_environment():
 
 def test_an_end_for_both_reasons_is_an_end_by_the_task():
     for steps, begun, wanted in ((STEPS, 1, [(False, True)] * 2), (1, 0, [(True, False)])):
-        copies = counting(fail="both").copies([1], steps)
+        copies = Copies(counting(fail="both"), [1], steps)
         copies.reset()
         copies._vector.envs[0].unwrapped.episode = begun
         ends = [copies.step(np.zeros((1, 1))) for _ in wanted]

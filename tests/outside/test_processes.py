@@ -9,7 +9,7 @@ import pytest
 
 import hybrid_rl
 from hybrid_rl import render
-from hybrid_rl.envs.adapters.external import External
+from hybrid_rl.envs.adapters.external import Copies, External
 from hybrid_rl.errors import WorldError
 
 SLEEPER = '''
@@ -64,7 +64,7 @@ def test_a_step_that_does_not_return_raises_or_ends_is_one_line(
     (tmp_path / "sleeper.py").write_text(SLEEPER)
     monkeypatch.syspath_prepend(str(tmp_path))
     given = {"make": "sleeper:Sleeper", "kwargs": {"fault": fault}}
-    copies = External(**given, timeout_s=1.0).copies([0, 1], steps=10)
+    copies = Copies(External(**given, timeout_s=1.0), [0, 1], steps=10)
     assert copies.reset().tolist() == [[0], [0]]
     for count in (1, 2):
         assert copies.step(np.zeros((2, 1))).obs.tolist() == [[count], [count]]
