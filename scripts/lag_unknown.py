@@ -1,10 +1,10 @@
-"""The lag of actions in simulated worlds, estimated by random decisions: is it held as the true one?
+"""Simulated worlds late by an unknown lag: do random decisions find it?
 
     python -m scripts.lag_unknown out=lag_unknown.json
 
 Of each task and delay [decisions] ten worlds, whose first decisions are random and know of no
-delay. FILE has the lag by `doctor`'s estimate [decisions], and what an action is held back for by
-a method that knows that lag, and the true one (`training.episode`, `known_lag`).
+delay. FILE has the lag by `doctor`'s estimate [decisions], and for how many an action is held back
+by a method that knows this lag, and by one that knows the true one; `same`: 1 where they agree.
 """
 
 import json
@@ -67,7 +67,7 @@ def lag_of(episode: Episode, key: jax.Array, decisions: int) -> float:
 def main() -> None:
     """The command."""
     given, _ = read(__doc__, ARGUMENTS)
-    out, found = output("out", given["out"], (".json",)), {}
+    out, found, same = output("out", given["out"], (".json",)), {}, []
     for task, words in TASKS.items():
         plain = build.episodes(build.load([f"task={task}", "algo=sac", *words]))
         for name, (delay, jitter, loss) in DELAYS.items():
@@ -79,10 +79,13 @@ def main() -> None:
             keys = jax.random.split(jax.random.key(300), given["seeds"])
             lags = [round(lag_of(episode, key, given["decisions"]), 2) for key in keys]
             row = {"lags": lags, "held": [int(held(lag)) for lag in lags]}
-            found.setdefault(task, {})[name] = {**row, "true": int(held(float(delay + jitter)))}
+            true = int(held(float(delay + jitter)))
+            same += [int(each == true) for each in row["held"]]
+            found.setdefault(task, {})[name] = {**row, "true": true}
             print(task, name, found[task][name], flush=True)
     made = f"{given['decisions']} random decisions of each world; lags [decisions]"
-    out.write_text(json.dumps({"made": made, "tasks": found}) + "\n", encoding="utf-8")
+    numbers = {"made": made, "same": same, "tasks": found}
+    out.write_text(json.dumps(numbers) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

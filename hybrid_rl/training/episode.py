@@ -20,6 +20,7 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.core.batching import when_any, where
+from hybrid_rl.envs.adapters.unstepped import Unstepped
 from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.envs.mujoco.randomised import Ranges
 from hybrid_rl.errors import UsageError
@@ -150,7 +151,8 @@ class Episode:
     def relabels(self) -> bool:
         """Whether `reward_of` gives what it pays for decisions as they were, without noise."""
         known = self.reward is not None or hasattr(self.env, "reward_of")
-        return known and self.action_repeat == 1 and self.observe is None
+        once = self.action_repeat == 1 or isinstance(self.env, Unstepped)
+        return known and once and self.observe is None
 
     @property
     def own_goal(self) -> Goal | None:
