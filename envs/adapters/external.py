@@ -144,9 +144,8 @@ class Copies:
         return SyncVectorEnv(makers, copy=False, autoreset_mode=AutoresetMode.DISABLED)
 
     @cached_property
-    def _reward_of(self) -> Callable[..., Array]:
-        assert self.goal is not None
-        return jax.jit(jax.vmap(self.goal.reward_of))
+    def _reward_of(self) -> Callable[..., Array] | None:
+        return self.goal and jax.jit(jax.vmap(self.goal.reward_of))
 
     def reset(self) -> np.ndarray:
         """The first observations [N, o]; the first call seeds the environments."""
@@ -162,7 +161,7 @@ class Copies:
         actions = (low + (u + 1) / 2 * (high - low)).reshape(-1, *space.shape)
         actions = (np.rint(actions) if space.dtype.kind in "iu" else actions).astype(space.dtype)
         obs, paid, ended, cut, infos = self._observed("step", lambda: self._stepped(actions))
-        if self.goal is not None:
+        if self._reward_of is not None:
             given = jax.device_put((self._obs, u, obs), jax.devices("cpu")[0])
             paid = np.asarray(self._reward_of(*given))
         if not np.isfinite(paid).all():

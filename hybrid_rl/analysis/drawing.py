@@ -179,7 +179,7 @@ def draw_outside(
     obs, total, pictures = copies.reset()[0], 0.0, [copies.picture()]
     for _ in range(steps or world.steps):
         got = copies.step(policy(obs)[None])
-        obs, total = got.following[0], total + float(got.reward[0])
+        obs, total = np.asarray(got.following[0]), total + float(got.reward[0])
         if got.terminated[0] or got.truncated[0]:
             break
         pictures.append(copies.picture())

@@ -221,11 +221,10 @@ class HostEvaluator:
         return {name: values.reshape(keys.shape) for name, values in found.items()}
 
 
-def copies_of(episode: Episode, seeds: Sequence[int], render_mode: str | None = None) -> Copies:
+def copies_of(episode: Episode, seeds: Sequence[int], render: str | None = None) -> Copies:
     """A copy of the episode's environment for each seed."""
     assert isinstance(episode.env, External)
-    given = episode.env, seeds, episode.steps, episode.action_repeat
-    return Copies(*given, render_mode, episode.reward)
+    return Copies(episode.env, seeds, episode.steps, episode.action_repeat, render, episode.reward)
 
 
 def seed_of(*numbers: int) -> int:

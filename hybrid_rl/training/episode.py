@@ -163,10 +163,8 @@ class Episode:
     def check_demonstrations(self) -> None:
         """Raise ValueError if demonstrations would keep another reward than what this one pays."""
         if (self.reward is not None or self.constraint is not None) and not self.relabels:
-            raise ValueError(
-                "replay.demonstrations: what reward and constraint make of them is unknown with "
-                "episode.action_repeat above 1, or without reward_of of the world; give null"
-            )
+            line = "their rewards are unknown with episode.action_repeat, or without reward_of of "
+            raise ValueError(f"replay.demonstrations: {line}the world; give null")
 
     def reward_of(self, x: Array, u: Array, after: Array) -> Array:
         """The reward [], less a violation's price, of action u [m] between observations [o]."""

@@ -160,12 +160,9 @@ class Drawn(Count):
         return *rest, {**info, "is_success": np.float32(self.time == 3)}
 
 
-@dataclass(frozen=True)
 class Later:
-    """Pays x + 10 u + 100 x', x the step of the episode."""
-
     def reward_of(self, x: jax.Array, u: jax.Array, after: jax.Array) -> jax.Array:
-        return x[1] + 10 * u[0] + 100 * after[1]
+        return x[1] + 10 * u[0] + 100 * after[1]  # of the step of the episode
 
 
 def test_an_evaluation_pays_each_episode_until_its_own_end():
@@ -179,6 +176,7 @@ def test_an_evaluation_pays_each_episode_until_its_own_end():
     found = {name: values.ravel() for name, values in evaluator(Params(), keys).items()}
     np.testing.assert_allclose(found["return"], [{2: 311, 3: 618, 4: 1026}[n] for n in lengths])
     assert found["success"].tolist() == [length == 3 for length in lengths]
+    assert replace(episode, action_repeat=2).relabels
 
 
 @pytest.mark.parametrize("processes", [False, True])
