@@ -4,7 +4,7 @@
     python -m hybrid_rl.train task=gymnasium env.make=scripts.dm_goals:cheetah episode.steps=500 \
         episode.action_repeat=2 random_steps=1000
     python -m hybrid_rl.evaluate run=DIR config_dir=my_conf reward=backwards
-    python -m hybrid_rl.train --config-dir my_conf run=DIR reward=backwards total_steps=10000
+    python -m hybrid_rl.train run=DIR config_dir=my_conf reward=backwards total_steps=10000
 
 Observations are dm_control's, and what the goals need of the physics. Each goal pays 2 at most for
 a decision of two steps. Sources: Tassa et al. 2018, "DeepMind Control Suite"; the tasks of Hansen
