@@ -6,9 +6,10 @@
     python -m hybrid_rl.evaluate run=DIR config_dir=my_conf reward=backwards
     python -m hybrid_rl.train run=DIR config_dir=my_conf reward=backwards total_steps=10000
 
-Observations are dm_control's, and what the goals need of the physics. Each goal pays 2 at most for
-a decision of two steps. Sources: Tassa et al. 2018, "DeepMind Control Suite"; the tasks of Hansen
-et al. 2024, "TD-MPC2: scalable, robust world models for continuous control".
+Observations are dm_control's, and what the goals need of the physics. A decision has two steps, and
+a goal pays twice what the second of them earns. Sources: Tassa et al. 2018, "DeepMind Control
+Suite"; the tasks of Hansen et al. 2024, "TD-MPC2: scalable, robust world models for continuous
+control".
 """
 
 from collections.abc import Callable

@@ -44,7 +44,7 @@ AGES = np.arange(8)  # actions of which one may act, the newest first, as in `do
 
 
 def lag_of(episode: Episode, key: jax.Array, decisions: int) -> float:
-    """The lag [decisions] by so many random decisions of one world."""
+    """The lag [decisions] of one world, estimated from `decisions` random actions."""
 
     def one(carry: tuple, key: jax.Array) -> tuple:
         state, age = carry

@@ -99,8 +99,8 @@ class External(Made):
 
     def one(self, render_mode: str | None = None) -> gymnasium.Env:
         """A copy of the environment, with flat observations and without a time limit of its own."""
-        shown = {} if render_mode is None else {"render_mode": render_mode}
-        given: dict[str, Any] = {**(self.kwargs or {}), **shown}
+        mode = {} if render_mode is None else {"render_mode": render_mode}
+        given: dict[str, Any] = {**(self.kwargs or {}), **mode}
         if not self.make:
             options: dict[str, Any] = {"disable_env_checker": True, "max_episode_steps": -1}
             return FlattenObservation(gymnasium.make(registered(self.id), **options, **given))

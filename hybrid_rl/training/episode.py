@@ -151,8 +151,8 @@ class Episode:
     def relabels(self) -> bool:
         """Whether `reward_of` gives what it pays for decisions as they were, without noise."""
         known = self.reward is not None or hasattr(self.env, "reward_of")
-        once = self.action_repeat == 1 or isinstance(self.env, Unstepped)
-        return known and once and self.observe is None
+        summed = self.action_repeat > 1 and not isinstance(self.env, Unstepped)
+        return known and not summed and self.observe is None
 
     @property
     def own_goal(self) -> Goal | None:
