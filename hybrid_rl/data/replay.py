@@ -129,18 +129,26 @@ class Replay:
         rows = memory.rows.at[..., at].set(jnp.where(filled, reward, kept.reward))
         return memory.replace(rows=rows)
 
-    def sample(self, memory: Memory, spec: Spec, batch_size: int, key: Array, k: int = 1) -> Batch:
+    def sample(
+        self, memory: Memory, spec: Spec, batch_size: int, key: Array, k: int = 1, given: int = 0
+    ) -> Batch:
         """`batch_size` transitions, uniform among those whose successor is in the memory.
 
+        Of a memory that began with `given` decisions of each environment half of them are later
+        ones, as soon as there is a batch of these (Ball et al. 2023, symmetric sampling).
         k: observations in the history that stands for an observation. The key is consumed.
         """
         length, num_envs, width = memory.rows.shape
         filled = jnp.minimum(memory.count, length)
-        oldest = memory.count - filled
-        known = jnp.maximum(filled - 1, 1) * num_envs
+        first = memory.count - filled
+        if given:
+            later = jnp.maximum(memory.count - given - 1, 0) * num_envs >= batch_size
+            own = later & (jnp.arange(batch_size) % 2 == 0)
+            first = jnp.where(own, jnp.maximum(given, first), first)
+        known = jnp.maximum(memory.count - first - 1, 1) * num_envs
         bits = jax.random.bits(key, (batch_size,))  # one draw where randint makes three
         draw = (bits % known.astype(bits.dtype)).astype(known.dtype)
-        time, env = oldest + draw // num_envs, draw % num_envs
+        time, env = first + draw // num_envs, draw % num_envs
         flat = memory.rows.reshape(-1, width)
         row = flat[(time % length) * num_envs + env]
         later = flat[((time + 1) % length) * num_envs + env]

@@ -80,9 +80,10 @@ class Session:
         with self.progress.doing("starting"):
             self.state = self.loop.init()
         if start is not None:
-            self.state = self.loop.on_devices(start.given(self.state))
-            self.record.unevaluated = bool(self.controllers)
             self.progress.note(start.line)
+            with self.progress.doing("pretraining"):
+                self.state = self.loop.pretrained(self.loop.on_devices(start.given(self.state)))
+            self.record.unevaluated = bool(self.controllers)
 
     def resume(self) -> None:
         """Start from the newest sound checkpoint."""

@@ -14,7 +14,7 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
-from omegaconf import DictConfig, open_dict
+from omegaconf import DictConfig, OmegaConf, open_dict
 
 from hybrid_rl.core.batching import join
 from hybrid_rl.errors import MisfitError, UsageError
@@ -107,10 +107,8 @@ def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:
         return configuration.build(config), None
     source = Path(str(config.run))
     then = folder.read_trained(source, "run")
-    if config.pretrain:
-        raise UsageError(f"pretrain={config.pretrain}: what run={source} has learned is kept")
     numbers = _numbers(config, then, source)
-    run = configuration.build(config)
+    run = configuration.build(OmegaConf.merge(config, {"pretrain": 0}))
     holds, why = _remembers(run.agent.episode, config, then)
     try:
         seeds = range(then.seed, then.seed + then.num_seeds)
@@ -128,8 +126,8 @@ def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:
         words = f"memory: its last {filled * run.agent.num_envs:,} decisions{why}"
     with open_dict(config):
         config.begun = {"step": step, "remembered": remembered, "memory": words}
+    run = configuration.build(config)  # with room for what it remembers
     if memory is not None:
-        run = configuration.build(config)  # with room for what it remembers
         memory = _rewritten(run.agent, memory, why == RELABELLED)
     if why:  # they imagined other rewards, or another world
         state = state.replace(learners=forgotten(state.learners))

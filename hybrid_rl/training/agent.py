@@ -57,10 +57,10 @@ class Agent:
     """A method that trains in `num_envs` environments.
 
     A learner of `latest` data uses each decision once, from the first one on. A learner of
-    `uniform` data makes `pretrain` gradient steps before the first decision, on the demonstrations
-    in the memory; then `updates` per decision, as soon as the memory holds a batch and, unless the
-    learner is `during_random`, the `random_steps` are over. Where a model is learned, learners get
-    its planning states in place of observations, but for the model's own learner.
+    `uniform` data makes `pretrain` gradient steps before the first decision, on what the memory
+    holds; then `updates` per decision, as soon as the memory holds a batch and, unless the learner
+    is `during_random`, the `random_steps` are over. Where a model is learned, learners get its
+    planning states in place of observations, but for the model's own learner.
 
     Raises:
         ValueError: for counts out of range, updates that do not divide into decisions, or two
@@ -78,10 +78,10 @@ class Agent:
     frozen: tuple[str, ...] = ()  # learners that make no updates
 
     def __post_init__(self) -> None:
-        if self.pretrain and not self.replay.num_demonstrated(self.num_envs):
+        if self.pretrain and not (self.given or self.replay.num_demonstrated(self.num_envs)):
             raise ValueError(
-                f"pretrain={self.pretrain}: the memory has no demonstrations to learn from; "
-                "give replay.demonstrations, or 0"
+                f"pretrain={self.pretrain}: the memory is empty; give replay.demonstrations, a run "
+                "with a memory, or 0"
             )
         if unknown := [name for name in self.frozen if name not in self.learners]:
             known = ", ".join(self.learners) or "none"
@@ -99,6 +99,11 @@ class Agent:
     def seen(self) -> Spec:
         """The sizes for what learns and acts, which sees a history of observations."""
         return history.seen(self.spec, self.episode.history)
+
+    @property
+    def given(self) -> int:
+        """Decisions of each environment in the memory that another run made."""
+        return max(-self.first_update, 0) // self.num_envs
 
     def check(self, controllers: Iterable[Controller] = ()) -> None:
         """Raise ValueError if a part refuses a run; no device is used.
@@ -137,7 +142,7 @@ class Agent:
             for (name, learner), k in zip(self.learners.items(), learning, strict=True)
         }
         state = AgentState(env, self.first_control(), memory, learners, run)
-        return self._pretrained(state, pretraining) if self.pretrain else state
+        return state if self.given else self.pretrained(state, pretraining)
 
     def params(self, state: AgentState) -> Params:
         """The parameters of all learners."""
@@ -146,8 +151,10 @@ class Agent:
             fields |= learner.params(state.learners[name])
         return Params(**fields)
 
-    def _pretrained(self, state: AgentState, key: Array) -> AgentState:
+    def pretrained(self, state: AgentState, key: Array) -> AgentState:
         """`state` after the gradient steps before the first decision. The key is consumed."""
+        if not self.pretrain:
+            return state
 
         def one(state: AgentState, key: Array) -> tuple[AgentState, None]:
             params, learned = self.params(state), dict(state.learners)
@@ -167,7 +174,8 @@ class Agent:
         if learner.data == "latest":
             return Batch(*self.replay.newest(memory, self.spec, self.episode.history))
         size = learner.batches * learner.batch_size
-        batch = self.replay.sample(memory, self.spec, size, key, self.episode.history)
+        of = memory, self.spec, size, key, self.episode.history, self.given
+        batch = self.replay.sample(*of)
         return lifted_batch(self._lifting(learner), params.model, batch)
 
     def _lifting(self, learner: Learner) -> Model | None:

@@ -188,6 +188,17 @@ class Loop:
         program, *given = self._first()
         return self.on_devices(compile_lowered(program.lower(*given))(*given))
 
+    def pretrained(self, state: AgentState) -> AgentState:
+        """`state` [S, ...], donated, after the gradient steps before the first decision."""
+        if not self.agent.pretrain:
+            return state
+
+        def one(state: AgentState) -> AgentState:
+            return self._of(state.numbers).pretrained(state, jax.random.fold_in(state.key, 0))
+
+        program = self.shard(jax.vmap(one), SEEDS, SEEDS, donate_argnums=0)
+        return compile_lowered(program.lower(state))(state)
+
     def shapes(self) -> AgentState:
         """The shapes of the states [S, ...]."""
         return jax.eval_shape(*self._first())

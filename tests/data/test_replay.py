@@ -45,6 +45,17 @@ def test_sampled_transitions_have_their_successors(capacity: int, worlds: int, t
     np.testing.assert_array_equal(batch.truncated, time % 3 != 0)
 
 
+@pytest.mark.parametrize(("times", "since"), [(20, 8), (11, 0), (40, 8)])
+def test_half_of_a_batch_is_of_this_run(times: int, since: int) -> None:
+    """Eight decisions of three worlds were given; of later ones there must be a batch."""
+    replay, memory = filled(60, 3, times)
+    time = np.asarray(replay.sample(memory, SPEC, 30, jax.random.key(0), given=8).obs)[:, 0] // 100
+    held = max(0, times - 20)
+    assert time[::2].min() >= max(since, held)
+    assert held <= time[1::2].min() < max(since, held + 4)
+    assert time.max() < times - 1
+
+
 def test_the_size_in_bytes_is_known_before_allocation() -> None:
     """`nbytes` is what `init` allocates."""
     replay = Replay(1000)

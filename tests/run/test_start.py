@@ -98,6 +98,16 @@ def test_another_reward_is_that_of_the_memory_too(source):
     np.testing.assert_allclose(rows[:, spec.obs + spec.act], wanted, rtol=1e-4)
 
 
+def test_before_the_first_decision_it_learns_from_the_memory(source):
+    """Each learner makes as many steps as asked for; half of later batches are of the new run."""
+    _, loop, state, _ = begun(source, "pretrain=3", *MOTION)
+    before = int(state.learners["model"].optimiser[0].count[0])
+    after = loop.pretrained(state)
+    assert int(after.learners["model"].optimiser[0].count[0]) == before + 3
+    assert not same(after.learners["policy"].policy, saved(source)["policy"].policy)
+    assert loop.agent.given == 200
+
+
 def test_a_part_that_the_run_did_not_have_gets_its_networks(source):
     """Another planner, of another part of conf/."""
     made = members.load([f"run={source}", "planner=gradient"])[0].config
@@ -187,7 +197,7 @@ REFUSED = [  # overrides, words of the line
     ("algo=sac", ": its parameters do not fit: "),
     ("resume={source}", "run, resume: give one of them"),
     ("freeze=[polcy]", "freeze=['polcy']: the method's learners are model, policy"),
-    ("pretrain=3", "pretrain=3: what run="),
+    ("pretrain=3 env.damping=true", "pretrain=3: the memory is empty"),
 ]
 
 
@@ -195,7 +205,7 @@ REFUSED = [  # overrides, words of the line
 def test_what_does_not_fit_is_one_line(source, tmp_path, monkeypatch, capfd, given, words):
     monkeypatch.chdir(tmp_path)
     before = contents(source)
-    assert words in refusal(capfd, f"run={source}", given.format(source=source))
+    assert words in refusal(capfd, f"run={source}", *given.format(source=source).split())
     assert contents(source) == before
 
 

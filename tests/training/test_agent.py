@@ -249,7 +249,7 @@ def test_pretraining_is_gradient_steps_on_demonstrations(imitating):
 def test_no_key_of_pretraining_is_reused(imitating, monkeypatch):
     """Its keys differ from those of the initial state and of the first decision."""
     received = []
-    monkeypatch.setattr(Agent, "_pretrained", lambda _, state, key: received.append(key) or state)
+    monkeypatch.setattr(Agent, "pretrained", lambda _, state, key: received.append(key) or state)
     state = imitating.init(KEY)
     first = jax.random.split(KEY, 2 + len(imitating.learners))
     decision = jax.random.split(state.key, 3 + 2 * imitating.num_envs)
@@ -258,7 +258,7 @@ def test_no_key_of_pretraining_is_reused(imitating, monkeypatch):
     assert len(np.unique(jax.random.key_data(keys), axis=0)) == len(keys)
 
 
-def test_pretraining_needs_demonstrations(imitating):
+def test_pretraining_needs_a_memory(imitating):
     bare = replace(imitating.replay, demonstrations=None)
-    with pytest.raises(ValueError, match="pretrain=3: the memory has no demonstrations"):
+    with pytest.raises(ValueError, match="pretrain=3: the memory is empty"):
         replace(imitating, replay=bare)
