@@ -12,8 +12,7 @@ differs from the run's is such a change, too.
 
 With reward=NAME, of conf/reward, the world pays another reward, and a planner maximises it in the
 model that the run has learned; nothing is trained. planner=NAME is another planner, and
-planner.KEY=VALUE alone another value of a key of the one that the run has. With imagine=policy the
-policy first learns the new reward in that model, which takes seconds.
+planner.KEY=VALUE alone another value of a key of the one that the run has.
 
 With constraint=NAME, of conf/constraint, the world counts the decisions that violate it, and the
 planner keeps it; the return stays as it is.

@@ -105,12 +105,6 @@ MUTANTS = {
         "risk.max()",
         "tests/controllers/test_constrained.py",
     ),
-    "an imagined episode has no end": Mutant(
-        "hybrid_rl/training/imagined.py",
-        "goes_on * jax.nn.sigmoid(-end)",
-        "goes_on",
-        "tests/training/test_imagined.py",
-    ),
     "an evaluation in Gymnasium is paid beyond the end": Mutant(
         "hybrid_rl/outside/host_loop.py",
         "np.where(done, 0, got.reward)",

@@ -3,8 +3,7 @@
     python -m scripts.new_goals run=DIR goals="speed 2;speed -2;level" steps=200 out=FILE
 
 Each goal is a reward of conf/reward, with its target if it has one. All rows have the same first
-states and nothing is trained, but for `imagined`, whose policy goes on learning in the models
-(imagine=policy). `still` acts with zeros; `times f` is the policy's action times f.
+states and nothing is trained. `still` acts with zeros; `times f` is the policy's action times f.
 """
 
 import json
@@ -27,15 +26,13 @@ from hybrid_rl.proposals.knots import KnotsProposal
 from hybrid_rl.proposals.mixture import MixtureProposal
 from hybrid_rl.proposals.noise import NoiseProposal
 from hybrid_rl.proposals.policy import PolicyProposal
-from hybrid_rl.run.retarget import aimed, by_learner, retargeted
+from hybrid_rl.run.retarget import retargeted
 from hybrid_rl.run.saved import Trained, load
 from hybrid_rl.tools.view.subject import replace_part
 from hybrid_rl.training.rollout import advance, begin, scores
-from hybrid_rl.types import Params
 from scripts.seeds import Row, every, split_names, write
 
 FACTORS = (0.8, 0.6, 0.4, 0.2)
-IMAGINED = "imagined"
 SIGNALS = {"share": "planner/policy_share", "insertion": "planner/mode_insertion_gradient"}
 ARGUMENTS = (
     Argument("run", "", "folder of a run with a learned model", needed="run=DIR"),
@@ -127,7 +124,6 @@ def rows(trained: Trained) -> dict[str, Any]:
         "both: strengths": sampling(proposal=scaled, horizon=20, samples=96, execute="best"),
         "both: gradient": both,
         **{name: Watched(both, metric) for name, metric in SIGNALS.items()},
-        **{f"{IMAGINED}: policy": policy, f"{IMAGINED}: both": both},
     }
 
 
@@ -139,17 +135,16 @@ def varied(both: Any, name: str) -> Any:
 
 
 def measured(
-    trained: Trained, goals: dict[str, Any], controller: Any, episodes: int, own: bool = False
+    trained: Trained, goals: dict[str, Any], controller: Any, episodes: int
 ) -> dict[str, np.ndarray]:
     """Means [S] of `controller`, made for the first of the goals, on each of them.
 
-    They are of returns, or of a Watched controller's metric. own: whether the parameters are
-    [S, G, ...], those of each goal.
+    They are of returns, or of a Watched controller's metric.
     """
     known = tuple(goals.values())
 
     def one(params: Any, keys: Array) -> Array:
-        def on(index: Array, params: Any) -> Array:
+        def on(index: Array) -> Array:
             goal = OneOf(known, index)
             episode = replace_part(trained.episode, known[0], goal)
             acts = replace_part(controller, known[0], goal)
@@ -160,7 +155,7 @@ def measured(
                 return control[1] / env.clock.decision
             return scores(env)["return"]
 
-        return jax.vmap(on, (0, 0 if own else None))(jnp.arange(len(known)), params)
+        return jax.vmap(on)(jnp.arange(len(known)))
 
     got = every(trained, episodes, one).mean(-1)
     return dict(zip(goals, got.T, strict=True))
@@ -176,37 +171,17 @@ def main() -> None:
     goals = [each.episode.reward for each in there]
     known = rows(there[0])
     wanted = split_names(given["rows"]) or list(known)
-    params, gained = imagined(run, named, goals) if IMAGINED in str(wanted) else (None, None)
     if given["env"]:
         first, goals = in_another(first, goals, given["env"])
         known = rows(first)
     by_name = dict(zip(named, goals, strict=True))
 
     def each() -> Iterator[Row]:
-        if gained is not None:
-            yield f"{IMAGINED}: gained", dict(zip(named, gained.T, strict=True))
         for name in wanted:
             controller = known.get(name) or varied(first.controllers["full"], name)
-            own = name.startswith(IMAGINED)
-            acts = replace(first, params=params) if own else first
-            yield name, measured(acts, by_name, controller, given["episodes"], own)
+            yield name, measured(first, by_name, controller, given["episodes"])
 
     write(given["out"], first, {"steps": given["steps"], "goals": named}, each())
-
-
-def imagined(run: Trained, names: list[str], goals: list[Any]) -> tuple[Params, Array]:
-    """Parameters [S, G, ...] whose policies learned each goal in the models, and if it gained."""
-    after, before = aimed(run, [*overrides(names[0]), "imagine=policy"])
-    known = tuple(goals)
-
-    def each(params: Params, key: Array) -> Any:
-        def on(index: Array) -> Any:
-            learning = replace_part(before, known[0], OneOf(known, index))
-            return learning.learned(after.episode, params, key)
-
-        return jax.vmap(on)(jnp.arange(len(known)))
-
-    return by_learner(run, each)
 
 
 def overrides(name: str) -> list[str]:

@@ -15,7 +15,7 @@ from hybrid_rl.controllers.gradient import GradientController
 from hybrid_rl.controllers.sampling import SamplingController
 from hybrid_rl.errors import UsageError
 from hybrid_rl.rewards.network import RewardNetwork
-from hybrid_rl.run.retarget import aimed, retargeted
+from hybrid_rl.run.retarget import retargeted
 from hybrid_rl.run.saved import Trained, load, read
 from hybrid_rl.settings import build
 from hybrid_rl.settings.groups import options
@@ -222,10 +222,8 @@ def test_a_return_that_is_not_finite_is_one_line_and_no_file(trained, capfd, mon
         (["run={}", "reward=speed", "reward.tarket=2"], "did you mean reward.target?"),
         (["run={}", "reward=level"], "reward.world=Cartpole: has no pitch, only position, speed, "),
         (["run={}", "planner=fast"], "hybrid_rl: planner=fast: unknown; choose one of adjoint"),
-        (["run={}", "imagine=dreams"], "imagine=dreams: unknown; choose one of policy"),
         (["policy=cartpole", "reward=speed\nx: 1"], "reward=speed x: 1: cannot be read; write key"),
         (["policy=cartpole", "reward=speed", "planner.horizon=3"], "=3: there is no learned model"),
-        (["policy=cartpole", "imagine=policy"], "there is no learned policy and model to imagine"),
     ],
 )
 def test_a_mistake_is_one_line(trained: Path, known: Trained, words, line, capfd, monkeypatch):
@@ -237,36 +235,7 @@ def test_a_mistake_is_one_line(trained: Path, known: Trained, words, line, capfd
 @pytest.mark.parametrize("word", ["planner=gradient", "constraint=speed"])
 def test_a_shipped_planner_maximises_the_learned_reward(word: str) -> None:
     """Without a goal, by the network in the file: there is no critic."""
-    now, _ = aimed(read("halfcheetah"), [word])
+    now = retargeted(read("halfcheetah"), [word])
     objective = now.controllers["full"].objective
     assert isinstance(objective.reward, RewardNetwork)
     assert (objective.critic, now.episode.reward) == (None, None)
-
-
-def test_a_shipped_policy_can_imagine() -> None:
-    """Its configuration lacks the keys that runs have got since."""
-    after, before = aimed(read("halfcheetah"), ["reward=level", "imagine=policy"])
-    assert before.learner.policy == after.controllers["policy"].policy
-
-
-def test_without_a_policy_none_imagines(tmp_path, capfd) -> None:
-    """Of a method that plans alone."""
-    run(tmp_path, "task=cartpole", "algo=nn_mppi", "total_steps=100")
-    capfd.readouterr()
-    words = "imagine=policy: there is no learned policy and model to imagine with"
-    assert words in refusal(capfd, f"run={tmp_path}", "imagine=policy", of=evaluate.main)
-
-
-def test_what_was_imagined_acts_where_it_gained(known: Trained) -> None:
-    """Policies change only there, and models nowhere; the note says where not."""
-    short = ["imagine.updates=4", "imagine.doubt=0", "imagine.episodes=2", "imagine.starts=8"]
-    short += ["imagine.learner.steps=1", "imagine.decisions=5", "imagine.walk=3"]
-    for first in (0, 4):
-        words = [*AT, "imagine=policy", *short, f"imagine.critic_first={first}"]
-        now = retargeted(known, words)
-        apart = jax.tree.map(lambda a, b: (a != b).any(), known.params.policy, now.params.policy)
-        old = "by these no gain" in now.notes[-1]
-        assert old == (not any(jax.tree.leaves(apart)))
-    assert old
-    same = jax.tree.map(np.array_equal, known.params.model, now.params.model)
-    assert all(jax.tree.leaves(same))

@@ -87,7 +87,6 @@ GOAL = (  # of commands that show a trained run in another world or on another g
     Argument("reward", "", "another reward, of conf/reward; empty: as in training"),
     Argument("constraint", "", "a constraint, of conf/constraint; empty: as in training"),
     Argument("planner", "", "of conf/controller; empty: gradient with reward= or constraint="),
-    Argument("imagine", "", "policy: it learns the goal in the models, before anything acts"),
 )
 CHANGES = {
     **{name: f"another value for a key of the {name}" for name in ("env", "episode")},

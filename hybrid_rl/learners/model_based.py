@@ -79,10 +79,6 @@ class ModelBased(SoftActorCritic):
         learner = self.begun(key, spec, self.alpha)
         return ModelBasedState(learner, kept, jnp.zeros(()), jnp.zeros(spec.n))
 
-    def having(self, state: ModelBasedState, policy: Any) -> ModelBasedState:
-        """`state` with these parameters of its policy."""
-        return state.replace(learner=state.learner.replace(policy=policy))
-
     def params(self, state: ModelBasedState) -> dict[str, Any]:
         """The policy and the critic."""
         return super().params(state.learner)

@@ -4,7 +4,6 @@
     evaluate run=DIR constraint=speed constraint.most=2 constraint.chance=0.1
     evaluate run=DIR planner=sampling planner.samples=256
     evaluate run=DIR planner.horizon=5
-    evaluate run=DIR reward=level imagine=policy
 
 `reward=NAME` is one of conf/reward, or one of yours. The environment pays it, and a planner
 maximises it in the learned model, from roll-outs of the policy (conf/retarget.yaml). A method
@@ -13,22 +12,16 @@ without a learned model keeps its policy, which knows nothing of the reward; a n
 `constraint=NAME` is one of conf/constraint. The environment counts its violations, and the planner
 `gradient` keeps it, for the new reward or for that of the training.
 
-`planner.KEY=VALUE` alone changes the planner of the run, also one of yours.
-
-Nothing is trained, unless `imagine=policy` lets the policy go on learning in the models, before
-anything acts (training.imagined).
+`planner.KEY=VALUE` alone changes the planner of the run, also one of yours. Nothing is trained.
 """
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import jax
-import jax.numpy as jnp
-from jax import Array
 from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl.envs.adapters.robot import Outside, Robot
@@ -45,16 +38,13 @@ from hybrid_rl.settings.words import forced, plain, typed_values, value_of
 from hybrid_rl.training.contract import check_acting
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.history import acting as acting_in
-from hybrid_rl.training.imagined import Imagination
-from hybrid_rl.training.loop import compile_lowered
-from hybrid_rl.types import Params
 
-GOALS = ("reward", "constraint", "planner", "imagine")  # arguments of commands
+GOALS = ("reward", "constraint", "planner")  # arguments of commands
 PLANNERS = ("planner", "model_planner")
 UNLEARNED = dict.fromkeys(("model", "reward_model", "policy"))  # where a run has none
 SOFT = ("world", "price", "chance", "width")  # of a constraint: not what it limits
 GROUPS = (*GOALS, "proposal")  # of conf/retarget.yaml
-KEYS = (*configuration.PAID, *PLANNERS, "imagine")  # of conf/retarget.yaml, which a user may change
+KEYS = (*configuration.PAID, *PLANNERS)  # of conf/retarget.yaml, which a user may change
 
 
 def load_changed(
@@ -79,17 +69,16 @@ def retargeted(
 
         slow = retargeted(load("halfcheetah"), ["reward=speed", "reward.target=2", "env.mass=1.5"])
 
-    overrides: as of `evaluate`: of reward, constraint, planner, imagine, env.KEY and episode.KEY.
+    overrides: as of `evaluate`: of reward, constraint, planner, env.KEY and episode.KEY.
     config_dir: a folder with groups of the user, as for `--config-dir`.
 
     Raises:
         UsageError: for a name, a key or a value that does not exist or does not fit the task, or a
-            planner or imagination where no model was learned.
+            planner where no model was learned.
     """
     worlds = [text for text in overrides if text.startswith(("env.", "episode."))]
     goal = [text for text in overrides if text not in worlds]
-    now, before = aimed(trained, goal, config_dir)
-    now = now if before is None else _taught(now, before)
+    now = _aimed(trained, goal, config_dir)
     if not worlds:
         return now
     assert now.config is not None
@@ -98,16 +87,16 @@ def retargeted(
     return replace(now, episode=episode, controllers=acting)
 
 
-def aimed(
+def _aimed(
     trained: Trained, overrides: Sequence[str], config_dir: str | Path | None = None
-) -> tuple[Trained, Imagination | None]:
-    """The result of `retargeted` before a policy learns, and how it will learn."""
+) -> Trained:
+    """`trained` on another goal or with another planner."""
     if not overrides:
-        return trained, None
+        return trained
     config = plain(trained.config, resolve=True)
     named = {text.partition("=")[0]: text for text in overrides}
     if "controllers" in config and all(key.startswith("planner.") for key in named):
-        return _adjusted(trained, overrides), None
+        return _adjusted(trained, overrides)
     words = [*overrides, *([search_path(config_dir)] if config_dir else [])]
     found = plain(configuration.composed("retarget", forced(words, GROUPS)))
     composed = {**dict.fromkeys(configuration.PAID), **found}
@@ -115,26 +104,24 @@ def aimed(
     raw = complete({**UNLEARNED, **config, **composed}, [*composed], typed)
     for key in typed:
         group = key.partition(".")[0]
-        goal = (*configuration.PAID, "imagine") if group == "planner" else ()  # they bring one
+        goal = configuration.PAID if group == "planner" else ()  # they bring one
         if not {group, *goal} & {*named}:
             raise UsageError(f"{named[key]}: is a key of {group}=NAME; give that with it")
         require({**raw, "algo": config.get("algo")}, key)
     goal = _fitting(config, OmegaConf.create({key: raw[key] for key in composed}))
     for text in overrides:
-        if (key := re.split("[.=]", text)[0]) in (*PLANNERS, "imagine") and key not in goal:
-            lacks = "policy and model to imagine" if key == "imagine" else "model to plan"
-            raise UsageError(f"{text}: there is no learned {lacks} with")
+        if (key := re.split("[.=]", text)[0]) in PLANNERS and key not in goal:
+            raise UsageError(f"{text}: there is no learned model to plan with")
     kept = {key: value for key, value in config.items() if key not in {*KEYS, *goal}}
     changed: Any = OmegaConf.merge({"controllers": {}}, kept, goal)
     OmegaConf.resolve(changed)
-    episode, controllers, before = configuration.acting(changed)
+    episode, controllers = configuration.acting(changed)
     notes = trained.notes
     if "planner" not in goal:
         unaware = f"what acts knows nothing of {' '.join(overrides)}"
         notes = (*notes, f"{trained.task}: there is no learned model to plan with; {unaware}")
     acting = {**trained.controllers, **_greedy(trained, episode, controllers)}
-    now = replace(trained, episode=episode, controllers=acting, notes=notes, config=changed)
-    return now, before
+    return replace(trained, episode=episode, controllers=acting, notes=notes, config=changed)
 
 
 def _adjusted(trained: Trained, overrides: Sequence[str]) -> Trained:
@@ -143,7 +130,7 @@ def _adjusted(trained: Trained, overrides: Sequence[str]) -> Trained:
     acting = [text.replace("planner", "controllers.full", 1) for text in overrides]
     config = _with(trained.config, typed_values(acting))
     try:
-        episode, controllers, _ = configuration.acting(config)
+        episode, controllers = configuration.acting(config)
     except UsageError as error:
         raise UsageError(str(error).replace("controllers.full", "planner", 1)) from error
     return replace(trained, controllers=_greedy(trained, episode, controllers), config=config)
@@ -157,21 +144,6 @@ def _greedy(
         one: Any = jax.tree.map(lambda leaf: leaf[0], trained.params)
         check_acting(episode, controllers.values(), controllers.values(), one)
     return {mode: controller.greedy() for mode, controller in controllers.items()}
-
-
-def by_learner(trained: Trained, one: Callable[[Params, Array], Any]) -> Any:
-    """The results [S, ...] of `one` for the parameters and the key of each learner."""
-    keys = jnp.stack([jax.random.fold_in(jax.random.key(seed), 0x1DEA) for seed in trained.seeds])
-    return compile_lowered(jax.jit(jax.vmap(one)).lower(trained.params, keys))(trained.params, keys)
-
-
-def _taught(trained: Trained, before: Imagination) -> Trained:
-    """`trained` with the policies that `before` gives, which takes seconds, and a note about it."""
-    params, new = by_learner(trained, partial(before.learned, trained.episode))
-    old = [str(seed) for seed, gained in zip(trained.seeds, new, strict=True) if not gained]
-    note = f"imagine: {before.updates:,} updates in the models"
-    note += f"; by these no gain, so the old policy acts: seed {', '.join(old)}" if old else ""
-    return replace(trained, params=params, notes=(*trained.notes, note))
 
 
 def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
@@ -192,7 +164,6 @@ def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
     if not {"model", "reward_model"} <= {*config}:
         return OmegaConf.masked_copy(goal, [*configuration.PAID])
     if "policy" not in config:
-        goal.pop("imagine", None)
         goal.planner = goal.model_planner
         goal.controllers = dict.fromkeys(("full", "planner"), "${planner}")
     return goal

@@ -17,6 +17,7 @@ import jax.numpy as jnp
 from omegaconf import DictConfig, OmegaConf, open_dict
 
 from hybrid_rl.core.batching import join
+from hybrid_rl.core.branches import Branches
 from hybrid_rl.errors import MisfitError, UsageError
 from hybrid_rl.files import targets as parts
 from hybrid_rl.run import folder
@@ -30,7 +31,6 @@ from hybrid_rl.settings.groups import search_path
 from hybrid_rl.settings.words import name, plain
 from hybrid_rl.training.agent import Agent, AgentState
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.training.imagined import forgotten
 
 OWN = ("random_steps", "pretrain", "run_dir", "freeze", "resume", "run")
 FRESH = ("random_steps=0", "pretrain=0")  # the learners have begun
@@ -183,6 +183,18 @@ def _rewritten(agent: Agent, memory: Any, relabelled: bool) -> Any:
         return agent.replay.relabelled(memory, agent.spec, agent.episode) if relabelled else memory
 
     return each_learner(one, memory)
+
+
+def forgotten(learners: Any) -> Any:
+    """States of learners whose branches start again, where they keep some.
+
+    What they imagined in another world, or for another goal, is not what they begin with.
+    """
+
+    def one(node: Any) -> Any:
+        return node.restarted() if isinstance(node, Branches) else node
+
+    return jax.tree.map(one, learners, is_leaf=lambda node: isinstance(node, Branches))
 
 
 def _listed(names: Any) -> str:

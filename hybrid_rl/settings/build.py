@@ -43,7 +43,6 @@ from hybrid_rl.settings.words import forced, listed, name, plain, typed_values
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.history import acting as acting_in
-from hybrid_rl.training.imagined import Imagination
 
 READ = (  # the keys that a run reads, and with them all keys that they refer to
     *(*COUNTS, *SECTIONS, *PAID, "expert", "task", "algo", "seed", "random_steps", "pretrain"),
@@ -183,12 +182,10 @@ def _acting(parts: DictConfig) -> tuple[Episode, dict[str, Controller]]:
     return acting_in(episode, dict(each), PENDING * isinstance(episode.env, Robot))
 
 
-def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller], Imagination | None]:
-    """The episodes of `config`, its controllers, and what learns before them."""
+def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller]]:
+    """The episodes of `config`, and its controllers."""
     with _usage(config) as parts:
-        episode, controllers = _acting(parts)
-        before = _instantiate(parts.get("imagine"), "imagine")
-    return episode, controllers, before
+        return _acting(parts)
 
 
 def episodes(config: DictConfig) -> Episode:
@@ -231,7 +228,7 @@ def _on_this_machine(config: DictConfig) -> DictConfig:
 
     Parts that read observations get a world of what is observed, which lacks what needs all of it.
     """
-    sections = [key for key in (*SECTIONS, *PAID, "imagine") if key in config]
+    sections = [key for key in (*SECTIONS, *PAID) if key in config]
     parts = OmegaConf.masked_copy(config, sections)
     chosen, observe = physics(config), config.episode.get("observe")
 
@@ -248,7 +245,7 @@ def _on_this_machine(config: DictConfig) -> DictConfig:
         replace(parts, lambda key, value: chosen if key == "physics" and value == own else None)
     if observe is not None:
         seen = {"_target_": SENSED, "env": parts.env, "observe": observe}
-        for name in ("controllers", "learners", "imagine"):  # an Episode observes by itself
+        for name in ("controllers", "learners"):  # an Episode observes by itself
             node = parts.get(name) or {}
             replace(node, lambda key, value: seen if key != "env" and value == parts.env else None)
     return parts

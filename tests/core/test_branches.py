@@ -6,7 +6,7 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.core import branches
-from hybrid_rl.training.imagined import forgotten
+from hybrid_rl.run.start import forgotten
 from hybrid_rl.types import Batch
 
 B = 10

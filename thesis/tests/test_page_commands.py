@@ -19,7 +19,6 @@ SMALL = {  # command -> arguments that make it small
     "render": {"episode_steps": "2", "width": "64", "height": "48"},
 }
 IN_ITS_WORLD = {"constraint": "speed", "constraint.most": "1"}  # a pendulum has no pitch
-IMAGINED = {"imagine.updates": "2", "imagine.critic_first": "1"}
 FILE_OR_NUMBER = re.compile(r"[\w/]+(?=\.\w+$)|[\d.,]+$")
 PAGES = [*commands.LIBRARY, *commands.RESULTS]
 over_pages = pytest.mark.parametrize("page", PAGES)
@@ -52,7 +51,6 @@ def programs():
                 given = {key: each for key, each in given.items() if not key.startswith("env.")}
             given |= SMALL.get(name, {})
             given |= IN_ITS_WORLD if given.get("constraint") == "pitch" else {}
-            given |= IMAGINED if "imagine" in given else {}
             kind = {key: FILE_OR_NUMBER.sub("", each) for key, each in given.items()}
             found.setdefault((name, *sorted(kind.items())), (name, given))
     return list(found.values())

@@ -14,7 +14,7 @@ it, with at most its own weight. Another mode, reward or body needs other progra
 goes on as before until they are compiled: a planner takes a minute or two the first time.
 
 A run that is training is followed by its newest checkpoint. With task=T the task's scripted expert
-acts. reward, constraint, planner, imagine, env.KEY and episode.KEY are as with `evaluate`.
+acts. reward, constraint, planner, env.KEY and episode.KEY are as with `evaluate`.
 """
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ from hybrid_rl.protocols import Controller
 from hybrid_rl.types import Params
 
 GOALS = ("reward", "constraint")  # fields of an episode
-CHOSEN = (*GOALS, "planner", "imagine", "expert")  # arguments that name a part
+CHOSEN = (*GOALS, "planner", "expert")  # arguments that name a part
 DISTURBED = {"delay": 0.25, "sensor_noise": 0.5, "action_noise": 0.5}  # of an episode -> the most
 EFFORT = ("samples", "elites", "refined", "iterations")  # fields of a planner
 QUICK = 4  # times fewer of them
