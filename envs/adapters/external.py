@@ -20,6 +20,7 @@ from typing import Any, NamedTuple
 
 import gymnasium
 import jax
+import jax.numpy as jnp
 import numpy as np
 from gymnasium.spaces import Box, Dict, Space, flatdim, flatten
 from gymnasium.vector import AsyncVectorEnv, AutoresetMode, SyncVectorEnv
@@ -30,7 +31,7 @@ from hybrid_rl.envs.adapters.unstepped import Made, import_named, registered
 from hybrid_rl.envs.trial import check
 from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame, kind_of
 from hybrid_rl.fields import Positive, part
-from hybrid_rl.protocols import Goal
+from hybrid_rl.protocols import Constraint, Goal
 from hybrid_rl.protocols.contract import of_user
 from hybrid_rl.types import Spec
 
@@ -114,7 +115,8 @@ class Outcome(NamedTuple):
     """One decision in N environments."""
 
     obs: Numbers  # [N, o] float32, the true last ones where an episode ended
-    reward: Numbers  # [N] float32
+    reward: Numbers  # [N] float32, before a constraint's price
+    violated: Numbers  # [N] float32: 1 where the decision violates the constraint, else 0
     terminated: Numbers  # [N] bool
     truncated: Numbers  # [N] bool: only the time limit ended the episode
     following: Numbers  # [N, o] float32, those of a new episode where one ended
@@ -122,7 +124,10 @@ class Outcome(NamedTuple):
 
 @dataclass
 class Copies:
-    """N copies of an environment, which step side by side; `goal` pays each decision, once."""
+    """N copies of an environment, which step side by side.
+
+    `goal` pays each decision, `limit` judges it, both once.
+    """
 
     env: External
     seeds: Sequence[int | None]
@@ -130,6 +135,7 @@ class Copies:
     repeat: int = 1
     render_mode: str | None = None
     goal: Goal | None = None
+    limit: Constraint | None = None
     success: np.ndarray | None = field(default=None, init=False)  # [N], if infos say so
 
     def _one(self) -> gymnasium.Env:
@@ -144,8 +150,15 @@ class Copies:
         return SyncVectorEnv(makers, copy=False, autoreset_mode=AutoresetMode.DISABLED)
 
     @cached_property
-    def _reward_of(self) -> Callable[..., Array] | None:
-        return self.goal and jax.jit(jax.vmap(self.goal.reward_of))
+    def _judge(self) -> Callable[..., tuple[Array | None, Array]]:
+        """What the goal pays, None without one, and whether the limit is violated."""
+        goal, limit = self.goal, self.limit
+
+        def one(x: Array, u: Array, after: Array) -> tuple[Array | None, Array]:
+            paid = None if goal is None else goal.reward_of(x, u, after)
+            return paid, jnp.float32(0 if limit is None else limit.excess(x, u, after) > 0)
+
+        return jax.jit(jax.vmap(one))
 
     def reset(self) -> np.ndarray:
         """The first observations [N, o]; the first call seeds the environments."""
@@ -161,9 +174,11 @@ class Copies:
         actions = (low + (u + 1) / 2 * (high - low)).reshape(-1, *space.shape)
         actions = (np.rint(actions) if space.dtype.kind in "iu" else actions).astype(space.dtype)
         obs, paid, ended, cut, infos = self._observed("step", lambda: self._stepped(actions))
-        if self._reward_of is not None:
+        violated = np.zeros(len(obs), np.float32)
+        if self.goal is not None or self.limit is not None:
             given = jax.device_put((self._obs, u, obs), jax.devices("cpu")[0])
-            paid = np.asarray(self._reward_of(*given))
+            by_goal, violated = jax.device_get(self._judge(*given))
+            paid = paid if by_goal is None else by_goal
         if not np.isfinite(paid).all():
             raise WorldError(f"{self.env.name}: step: gives a reward that is not finite")
         flags = [np.asarray(infos[name]) for name in FLAGS if name in infos]
@@ -173,7 +188,8 @@ class Copies:
             options = {"reset_mask": done}
             fresh = self._observed("reset", lambda: self._vector.reset(options=options))[0]
             self._obs = np.where(done[:, None], fresh, obs)
-        return Outcome(obs, np.asarray(paid, np.float32), ended, cut & ~ended, self._obs)
+        paid = np.asarray(paid, np.float32)
+        return Outcome(obs, paid, violated, ended, cut & ~ended, self._obs)
 
     def picture(self) -> np.ndarray:
         """The first environment [height, width, 3] (uint8), with render_mode="rgb_array"."""

@@ -32,6 +32,7 @@ from hybrid_rl.training.agent import AgentState
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Loop, put
 from hybrid_rl.training.metrics import outcome
+from hybrid_rl.training.wrappers import priced
 from hybrid_rl.types import EnvState, Params, PyTree
 
 RESUMED = "the environment begins a new episode, as its own state is in no checkpoint: the "
@@ -128,7 +129,7 @@ class HostLoop(Loop):
 
         made: 0 if there are none; then the next row of the memory is written, and replaced later.
         """
-        (now, after), count = states(state.env, got), state.memory.count
+        (now, after), count = states(self.agent.episode, state.env, got), state.memory.count
         before = state.replace(memory=state.memory.replace(count=count - made))
         seen = self._of(state.numbers).observe(before, u, now, after)
         both = (seen.env, seen.control), (state.env, state.control)
@@ -172,7 +173,7 @@ class HostProgram:
 
 def outcome_like(env: EnvState) -> Outcome:
     """An outcome with the shapes of those at `env`, where there is none yet."""
-    return Outcome(env.obs, env.reward, env.terminated, env.truncated, env.obs)
+    return Outcome(env.obs, env.reward, env.reward, env.terminated, env.truncated, env.obs)
 
 
 class HostEvaluator:
@@ -200,11 +201,14 @@ class HostEvaluator:
     def __call__(
         self, params: Params, keys: Array, cut: Callable[[int], Any] = lambda made: False
     ) -> dict[str, np.ndarray] | None:
-        """The `return` [S, N] of each episode, and `success` if infos say; None once cut(made)."""
+        """The `return` [S, N] of each episode; None once cut(made).
+
+        Also `success`, if infos say so, and `violations` of a constraint.
+        """
         seeds = [seed_of(*map(int, row)) for row in jax.random.key_data(keys).reshape(-1, 2)]
         copies = copies_of(self.episode, seeds)
         self._acting.begin(keys)
-        obs, done, returns = copies.reset(), np.zeros(len(seeds), bool), np.zeros(len(seeds))
+        obs, done, totals = copies.reset(), np.zeros(len(seeds), bool), np.zeros((2, len(seeds)))
         flagged, success, made = False, np.zeros(len(seeds)), 0
         while not done.all():
             if cut(made):
@@ -212,19 +216,21 @@ class HostEvaluator:
                 return None
             u, made = self._acting(params, obs.reshape(*keys.shape, -1)), made + 1
             got = copies.step(u.reshape(len(seeds), -1))
-            returns += np.where(done, 0, got.reward)
+            totals += np.where(done, 0, [got.reward, got.violated])
             if copies.success is not None:
                 flagged, success = True, np.where(done, success, copies.success)
             done, obs = done | got.terminated | got.truncated, got.following
         copies.close()
-        found = {"return": returns} | ({"success": success} if flagged else {})
+        found = {"return": totals[0]} | ({"success": success} if flagged else {})
+        found |= {} if self.episode.constraint is None else {"violations": totals[1]}
         return {name: values.reshape(keys.shape) for name, values in found.items()}
 
 
 def copies_of(episode: Episode, seeds: Sequence[int], render: str | None = None) -> Copies:
     """A copy of the episode's environment for each seed."""
     assert isinstance(episode.env, External)
-    return Copies(episode.env, seeds, episode.steps, episode.action_repeat, render, episode.reward)
+    paid = episode.reward, episode.constraint
+    return Copies(episode.env, seeds, episode.steps, episode.action_repeat, render, *paid)
 
 
 def seed_of(*numbers: int) -> int:
@@ -232,8 +238,10 @@ def seed_of(*numbers: int) -> int:
     return int(np.random.SeedSequence(numbers).generate_state(1)[0])
 
 
-def states(env: EnvState, got: Outcome) -> tuple[EnvState, EnvState]:
+def states(episode: Episode, env: EnvState, got: Outcome) -> tuple[EnvState, EnvState]:
     """The states [E] after a decision at `env` [E]: the outcome, and what the next one sees."""
     now = next_state(env, got.obs, got.reward, got.terminated, got.truncated)
+    if episode.constraint is not None:
+        now = priced(now, episode.constraint, env, jnp.asarray(got.violated))
     first = jax.tree.map(jnp.zeros_like, now)
     return now, where(now.done, first, now).replace(obs=got.following)

@@ -14,7 +14,7 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
-from omegaconf import DictConfig, OmegaConf, open_dict
+from omegaconf import DictConfig, open_dict
 
 from hybrid_rl.core.batching import join
 from hybrid_rl.core.branches import Branches
@@ -108,7 +108,9 @@ def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:
     source = Path(str(config.run))
     then = folder.read_trained(source, "run")
     numbers = _numbers(config, then, source)
-    run = configuration.build(OmegaConf.merge(config, {"pretrain": 0}))
+    unread = config.copy()
+    unread.pretrain = 0
+    run = configuration.build(unread)
     holds, why = _remembers(run.agent.episode, config, then)
     try:
         seeds = range(then.seed, then.seed + then.num_seeds)

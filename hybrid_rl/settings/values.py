@@ -60,9 +60,9 @@ def check(config: DictConfig) -> None:
 
 def time_limit(env: External | Robot, given: Mapping[str, Any]) -> dict[str, int]:
     """The time limit of an environment on the host [decisions], if `given` has none."""
-    own = ("lag", "reward") if isinstance(env, Robot) else ()
+    own = ("lag", *PAID) if isinstance(env, Robot) else ()
     noise = "sensor_noise", "action_noise"
-    for key in ("delay", "jitter", "loss", *own, *noise, "observe", "randomise", "constraint"):
+    for key in ("delay", "jitter", "loss", *own, *noise, "observe", "randomise"):
         value = given.get(key)
         if isinstance(value, dict):  # of names and ranges
             value = {name: each for name, each in value.items() if each is not None}

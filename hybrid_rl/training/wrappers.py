@@ -137,11 +137,16 @@ class Constrained(Around):
         """The state one decision later, judged by the observations before and after it."""
         now, u = super().step(state, action), jnp.clip(action, -1.0, 1.0)
         violated = (self.limit.excess(state.obs, u, now.obs) > 0).astype(now.reward.dtype)
-        return now.replace(
-            reward=now.reward - self.limit.price * violated,
-            metrics={**now.metrics, VIOLATED: violated},
-            clock=now.clock._replace(violations=state.clock.violations + violated),
-        )
+        return priced(now, self.limit, state, violated)
+
+
+def priced(now: EnvState, limit: Constraint, before: EnvState, violated: Array) -> EnvState:
+    """`now` less the price of a violation, 0 or 1, which is counted."""
+    return now.replace(
+        reward=now.reward - limit.price * violated,
+        metrics={**now.metrics, VIOLATED: violated},
+        clock=now.clock._replace(violations=before.clock.violations + violated),
+    )
 
 
 @dataclass(frozen=True)

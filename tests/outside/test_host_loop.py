@@ -50,11 +50,24 @@ class Glider:
         return EnvState(x, x, -x @ x, x[0] > 1.3, jnp.zeros((), bool))
 
 
+@dataclass(frozen=True)
+class Below:
+    """Violated where the second entry is below `least`."""
+
+    least: float
+    price: float = 0.5
+    chance: float | None = None
+    width: float = 0.1
+
+    def excess(self, x: jax.Array, u: jax.Array, after: jax.Array) -> jax.Array:
+        return self.least - after[1]
+
+
 def agents(num_envs: int) -> tuple[Any, Any]:
-    """SAC on the glider in one program, and through Gymnasium."""
+    """SAC on the glider in one program, and through Gymnasium, both with a constraint."""
     agent = config.build(small.load("sac", "task=point_mass", f"num_envs={num_envs}")).agent
     host = External(make=lambda: GymnasiumEnv(Glider(), 0))
-    inside, outside = (Episode(env, STEPS) for env in (Glider(), host))
+    inside, outside = (Episode(env, STEPS, constraint=Below(0.0)) for env in (Glider(), host))
     return replace(agent, episode=inside), replace(agent, episode=outside)
 
 
@@ -166,8 +179,8 @@ class Later:
 
 
 def test_an_evaluation_pays_each_episode_until_its_own_end():
-    """By a goal, also where the others of the call go on."""
-    episode = Episode(External(make=Drawn), 9, reward=Later())
+    """By a goal, also where the others of the call go on; a violation costs no return."""
+    episode = Episode(External(make=Drawn), 9, reward=Later(), constraint=Below(2.5))
     keys = jax.random.split(jax.random.key(2), (2, 4))
     evaluator = HostEvaluator(episode, ConstantController(0.5), Params(), keys)
     seeds = [seed_of(*map(int, row)) for row in jax.random.key_data(keys).reshape(-1, 2)]
@@ -176,6 +189,7 @@ def test_an_evaluation_pays_each_episode_until_its_own_end():
     found = {name: values.ravel() for name, values in evaluator(Params(), keys).items()}
     np.testing.assert_allclose(found["return"], [{2: 311, 3: 618, 4: 1026}[n] for n in lengths])
     assert found["success"].tolist() == [length == 3 for length in lengths]
+    assert found["violations"].tolist() == [2] * len(lengths)
     assert replace(episode, action_repeat=2).relabels
 
 
