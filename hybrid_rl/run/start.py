@@ -33,10 +33,11 @@ from hybrid_rl.training.agent import Agent, AgentState
 from hybrid_rl.training.episode import Episode
 
 OWN = ("random_steps", "pretrain", "run_dir", "freeze", "resume", "run")
-FRESH = ("random_steps=0", "pretrain=0")  # the learners have begun
+FRESH = ("random_steps=0", "pretrain=null")  # the learners have begun
 FOREIGN = re.compile(r"\$\{[^}]*:|^\+*(hydra|(?!demonstrations=)[\w@]+=[^=]*\.\.)")
 WORLD = ("env", "episode", "constraint", "num_envs")  # keys on which what is remembered depends
 PASSING = ("episode.steps", "env.physics")  # but not on these
+PRETRAIN = 4000  # gradient steps on a memory with other rewards, before a policy for them acts
 RELABELLED = ", with the rewards that they earn now"
 
 
@@ -112,6 +113,8 @@ def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:
     unread.pretrain = 0
     run = configuration.build(unread)
     holds, why = _remembers(run.agent.episode, config, then)
+    if config.pretrain is None:
+        config.pretrain = PRETRAIN if why == RELABELLED else 0
     try:
         seeds = range(then.seed, then.seed + then.num_seeds)
         wanted = ["learners", "memory"] if holds else ["learners"]
@@ -136,8 +139,9 @@ def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:
     learners, memory = jax.tree.map(lambda leaf: leaf[numbers], (state.learners, memory))
     known = [name for learner in run.agent.learners.values() for name in learner.owns]
     line = f"begins with {_listed(known)} of {source} at step {step:,}; {words}"
-    frozen = f"; frozen: {_listed(run.agent.frozen)}" if run.agent.frozen else ""
-    return run, Start(learners, memory, "\n".join([*notes, line + frozen]))
+    line += f"; {config.pretrain:,} gradient steps on it come first" if config.pretrain else ""
+    line += f"; frozen: {_listed(run.agent.frozen)}" if run.agent.frozen else ""
+    return run, Start(learners, memory, "\n".join([*notes, line]))
 
 
 def _numbers(config: DictConfig, then: DictConfig, source: Path) -> Any:

@@ -14,17 +14,21 @@ def tree() -> dict[str, Any]:
     return yaml.safe_load(FILE.read_text(encoding="utf-8"))
 
 
-def leaves(branch: dict[str, Any]) -> Iterator[tuple[str, Any]]:
-    """(the question before it with its answer, the leaf), from the first to the last."""
+def leaves(branch: dict[str, Any], agreed: str = "") -> Iterator[tuple[str, Any]]:
+    """(the questions with a yes before it and the last one, the leaf), from the first to the last.
+
+    agreed: questions with a yes before this branch.
+    """
     for way, answer in (("then", "Yes"), ("else", "No")):
+        path = f"{agreed}{branch['ask']} {answer}"
         if "ask" in branch[way]:
-            yield from leaves(branch[way])
+            yield from leaves(branch[way], f"{path}. " if answer == "Yes" else agreed)
         else:
-            yield f"{branch['ask']} {answer}", branch[way]
+            yield path, branch[way]
 
 
 def table() -> str:
-    """Last question, method, command and where to read on."""
-    rows = ["| question | method | more |", "|---|---|---|"]
+    """Questions, method, and where to read on."""
+    rows = ["| questions | method | more |", "|---|---|---|"]
     rows += [f"| {path} | {leaf['name']} | {leaf['more']} |" for path, leaf in leaves(tree())]
     return "\n".join(rows) + "\n"

@@ -89,7 +89,7 @@ def test_the_memory_stays_where_it_is_true(source):
 
 def test_another_reward_is_that_of_the_memory_too(source):
     made, loop, state, line = begun(source, *MOTION)
-    assert line.endswith("200 decisions, with the rewards that they earn now")
+    assert "200 decisions, with the rewards that they earn now; 4,000 gradient steps on it" in line
     assert made.reward.world == made.env
     spec, rows = loop.agent.spec, np.asarray(state.memory.rows[0, :200, 0])
     motion, u = rows[:, -6:], rows[:, spec.obs : spec.obs + spec.act]
