@@ -105,10 +105,16 @@ MUTANTS = {
         "risk.max()",
         "tests/controllers/test_constrained.py",
     ),
+    "no part of a batch is of the run's own decisions": Mutant(
+        "hybrid_rl/data/replay.py",
+        "jnp.maximum(given, first)",
+        "first",
+        "tests/data/test_replay.py",
+    ),
     "an evaluation in Gymnasium is paid beyond the end": Mutant(
         "hybrid_rl/outside/host_loop.py",
-        "np.where(done, 0, got.reward)",
-        "got.reward",
+        "np.where(done, 0, [got.reward, got.violated])",
+        "[got.reward, got.violated]",
         "tests/outside/test_host_loop.py",
     ),
     "an action is repeated beyond the end": Mutant(
