@@ -13,6 +13,7 @@ half. After a minute a learner has the return of its latest evaluation, null onc
 
 import json
 from collections.abc import Callable, Sequence
+from contextlib import chdir
 from dataclasses import replace
 from functools import reduce
 from pathlib import Path
@@ -201,7 +202,8 @@ def draw(found: dict[str, Any]) -> "Figure":
 def main() -> None:
     """The command."""
     given: Any = read(__doc__, ARGUMENTS)[0]
-    sources = [numbers(Path(given["runs"]))] if given["runs"] else []
+    with chdir(given["runs"] or "."):  # the numbers name runs from there
+        sources = [numbers(Path())] if given["runs"] else []
     if given["keep"]:
         sources.insert(0, json_file(Path(given["keep"])))
     if not sources:

@@ -1,4 +1,4 @@
-"""Replay memory: a ring of packed rows, sampled uniformly.
+"""Replay memory: a ring of packed rows.
 
 A transition is one row of float32 [width]; its next executed action is in the row of the same
 environment one decision later, and is not stored twice; nor is its history (`core.history`), which
@@ -142,8 +142,8 @@ class Replay:
         filled = jnp.minimum(memory.count, length)
         first = memory.count - filled
         if given:
-            later = jnp.maximum(memory.count - given - 1, 0) * num_envs >= batch_size
-            own = later & (jnp.arange(batch_size) % 2 == 0)
+            enough = jnp.maximum(memory.count - given - 1, 0) * num_envs >= batch_size
+            own = enough & (jnp.arange(batch_size) % 2 == 0)
             first = jnp.where(own, jnp.maximum(given, first), first)
         known = jnp.maximum(memory.count - first - 1, 1) * num_envs
         bits = jax.random.bits(key, (batch_size,))  # one draw where randint makes three

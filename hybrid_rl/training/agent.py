@@ -142,7 +142,7 @@ class Agent:
             for (name, learner), k in zip(self.learners.items(), learning, strict=True)
         }
         state = AgentState(env, self.first_control(), memory, learners, run)
-        return state if self.given else self.pretrained(state, pretraining)
+        return state if self.given else self.pretrained(state, pretraining)  # else when its memory is there
 
     def params(self, state: AgentState) -> Params:
         """The parameters of all learners."""
