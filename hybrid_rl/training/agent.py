@@ -133,7 +133,7 @@ class Agent:
         return {self.random_steps, *self.starts().values()}
 
     def init(self, key: Array) -> AgentState:
-        """The state before the first decision. The key is consumed."""
+        """The state before the first decision; a given memory comes later. The key is consumed."""
         run, resetting, *learning, pretraining = jax.random.split(key, 3 + len(self.learners))
         env = jax.vmap(self.episode.reset)(jax.random.split(resetting, self.num_envs))
         memory = self.replay.init(self.spec, self.num_envs, self.episode.own_goal)
@@ -142,7 +142,7 @@ class Agent:
             for (name, learner), k in zip(self.learners.items(), learning, strict=True)
         }
         state = AgentState(env, self.first_control(), memory, learners, run)
-        return state if self.given else self.pretrained(state, pretraining)  # else when its memory is there
+        return state if self.given else self.pretrained(state, pretraining)
 
     def params(self, state: AgentState) -> Params:
         """The parameters of all learners."""
