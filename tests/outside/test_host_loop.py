@@ -178,9 +178,11 @@ class Later:
         return x[1] + 10 * u[0] + 100 * after[1]  # of the step of the episode
 
 
-def test_an_evaluation_pays_each_episode_until_its_own_end():
+@pytest.mark.parametrize("processes", [False, True])
+def test_an_evaluation_pays_each_episode_until_its_own_end(processes):
     """By a goal, also where the others of the call go on; a violation costs no return."""
-    episode = Episode(External(make=Drawn), 9, reward=Later(), constraint=Below(2.5))
+    env = External(make=Drawn, processes=processes)
+    episode = Episode(env, 9, reward=Later(), constraint=Below(2.5))
     keys = jax.random.split(jax.random.key(2), (2, 4))
     evaluator = HostEvaluator(episode, ConstantController(0.5), Params(), keys)
     seeds = [seed_of(*map(int, row)) for row in jax.random.key_data(keys).reshape(-1, 2)]
