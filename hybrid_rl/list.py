@@ -1,4 +1,4 @@
-"""Tasks, methods, models, planners and experiments, one line each.
+"""What to choose from, one line each: tasks, methods, settings, parts, goals, experiments.
 
     python -m hybrid_rl.list
     python -m hybrid_rl.list config_dir=my_conf
@@ -23,7 +23,8 @@ from hybrid_rl.errors import relative
 from hybrid_rl.settings.groups import CONF, PACKAGE, THESIS, choices, files, search_path
 
 MARKS = ("# Has ", "# Needs ")  # of a task, and of a method that not every task fits
-GROUPS = {"task": "Tasks", "algo": "Methods", "model": "Models", "planner": "Planners"}
+GROUPS = {"task": "Tasks", "algo": "Methods", "settings": "Settings", "model": "Models"}
+GROUPS |= {"planner": "Planners", "reward": "Goals", "constraint": "Constraints"}
 GROUPS |= {"experiment": "Experiments"}
 FIRST = (  # of the methods; parts of others and baselines follow
     *("hybrid_stochastic", "hybrid_deterministic", "sac", "flash_sac", "ppo", "nn_mppi"),

@@ -46,12 +46,12 @@ def test_each_name_has_the_first_comment_of_its_file(conf):
     names = {
         group: {name: listed.about(path) for name, path in each.items()}
         for group, each in listed.listing(conf).items()
+        if each
     }
     assert names == {
         "task": {"hopping": "Hopper: hops."},
         "algo": {"ring": "Around a ring.", "actor": "Actor and critic."},
         "model": {"network": "A part."},
-        "planner": {},
         "experiment": {"thesis/deep/table_1": "", "thesis/figure_2": "Figure 2."},
     }
 
