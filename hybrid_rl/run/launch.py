@@ -184,8 +184,7 @@ def train_built(run: Run, output: Output) -> dict[str, Any]:
     """Run what is built, in a new folder or on from the checkpoints in `config.resume`."""
     if run.config.resume is None:
         return _begin(Job([run]), output)
-    run_dir = Path(str(run.config.resume))
-    with lock(run_dir, "run_dir"):
+    with lock(Path(run.config.resume), "run_dir") as run_dir:
         return _run(Job([run], [run_dir]), output)
 
 

@@ -48,13 +48,9 @@ class Session:
     pace: Pace = field(default_factory=Pace)
     program: Any = None  # compiled
     compile_s: float = 0.0  # [s] that compiling took
-    evaluations: Evaluations | None = None  # compiled
-
-    def __post_init__(self) -> None:
-        """Create the record."""
-        seeds = self.loop.seeds
-        self.record = Record([[] for _ in seeds], [None for _ in seeds])
-        self._sound: dict[int, Any] = {}  # the states that replace those of learners that diverged
+    evaluations: Evaluations = field(init=False)  # compiled
+    record: Record = field(init=False)
+    sound: dict[int, Any] = field(default_factory=dict)  # states instead of those that diverged
 
     @property
     def step(self) -> int:
@@ -78,6 +74,8 @@ class Session:
 
     def begin(self, start: Start | None = None) -> None:
         """Start from the first state, or with what another run knows, which is evaluated first."""
+        seeds = self.loop.seeds
+        self.record = Record([[] for _ in seeds], [None for _ in seeds])
         with self.progress.doing("starting"):
             self.state = self.loop.init()
         if start is not None:
@@ -187,7 +185,6 @@ class Session:
 
     def _evaluate(self) -> None:
         """The outcomes of every evaluated mode, unless a signal comes."""
-        assert self.evaluations is not None
         with self.progress.doing("evaluating"):
             params = self.loop.params(self.state)
             outcomes = self.evaluations(params, lambda: self.stop is not None)
@@ -250,9 +247,9 @@ class Session:
         the state of its last sound checkpoint, or its initial state.
         """
         for s in self.record.ends:
-            if s not in self._sound:
-                self._sound[s] = self.shelf.learner(s)
-            self.state = self.loop.with_learner(self.state, s, self._sound[s])
+            if s not in self.sound:
+                self.sound[s] = self.shelf.learner(s)
+            self.state = self.loop.with_learner(self.state, s, self.sound[s])
 
     def _save(self) -> None:
         """Write a checkpoint."""
