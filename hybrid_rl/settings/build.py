@@ -10,7 +10,7 @@ from typing import Any
 
 from hydra import compose, initialize_config_dir
 from hydra.core.global_hydra import GlobalHydra
-from omegaconf import DictConfig, ListConfig, OmegaConf, open_dict
+from omegaconf import DictConfig, ListConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl.envs.adapters.external import External, check_world
@@ -94,7 +94,8 @@ def compose_raw(overrides: Sequence[str], config_dir: str | Path | None = None) 
         others = [text for text in words if name(text) == "hydra.searchpath"]
         paths = ",".join(text.partition("=[")[2].rstrip("]") for text in (own, *others))
         words = [f"hydra.searchpath=[{paths}]", *(text for text in words if text not in others)]
-    return read(composed("train", words, return_hydra_config=True))
+    config = composed("train", words, return_hydra_config=True)
+    return read(config, config.hydra)
 
 
 def composed(name: str, words: list[str], **options: Any) -> DictConfig:
@@ -108,17 +109,17 @@ def composed(name: str, words: list[str], **options: Any) -> DictConfig:
         raise UsageError(explain(error)) from error
 
 
-def read(config: DictConfig) -> DictConfig:
+def read(config: DictConfig, hydra: DictConfig) -> DictConfig:
     """What a run reads: its sections and all that they refer to, parts complete.
 
-    config: as Hydra composed it, with Hydra's own part. UsageError for a typed key that it lacks.
+    config: as Hydra composed it; hydra: Hydra's own part. UsageError for a typed key that it lacks.
     """
     config = config.copy()
-    with open_dict(config):
-        hydra = config.pop("hydra")
+    OmegaConf.set_struct(config, False)  # it gets keys
     complete_names(config, hydra)
     adopt_planner(config, hydra)
     raw = plain(config)
+    raw.pop("hydra", None)
     typed = typed_keys(hydra) if raw["resume"] is None else []
     # a part that lacks a key of `settings` keeps what it has
     raw = complete(raw, (*READ, "sweep"), [*typed, *settings_keys(hydra)])
