@@ -158,9 +158,9 @@ def build(config: DictConfig) -> Run:
     check(config)
     rounds = -(-config.total_steps // config.num_envs)
     remembered = config.get("begun", {}).get("remembered", 0)  # decisions of each environment
+    episode, controllers = acting(config)
     with _usage(config) as parts:
         set_schedules(parts.learners, config.total_steps)
-        episode, controllers = _acting(parts)
         agent = Agent(
             episode,
             controllers["full"],
@@ -176,35 +176,25 @@ def build(config: DictConfig) -> Run:
     return Run(config, agent, {mode: c.greedy() for mode, c in controllers.items()})
 
 
-def _acting(parts: DictConfig) -> tuple[Episode, dict[str, Controller]]:
-    """The episodes, and the controllers as they act in training."""
-    episode = _episode(parts)  # first, as controllers may hold their reward, too
-    each = ((k, _instantiate(v, f"controllers.{k}")) for k, v in parts.controllers.items())
-    return acting_in(episode, dict(each), PENDING * isinstance(episode.env, Robot))
-
-
 def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller]]:
-    """The episodes of `config`, and its controllers."""
+    """The episodes of `config`, and its controllers as they act in training."""
+    episode = episodes(config)  # first, as controllers may hold their reward, too
     with _usage(config) as parts:
-        return _acting(parts)
+        each = ((k, _instantiate(v, f"controllers.{k}")) for k, v in parts.controllers.items())
+        return acting_in(episode, dict(each), PENDING * isinstance(episode.env, Robot))
 
 
 def episodes(config: DictConfig) -> Episode:
     """The episodes of `config`, without its method."""
     with _usage(config) as parts:
-        return _episode(parts)
-
-
-def _episode(parts: DictConfig) -> Episode:
-    """The episodes of the sections `env` and `episode`."""
-    env = _instantiate(parts.env, "env")
-    check_world(env)
-    target = {"_target_": "hybrid_rl.training.episode.Episode", "env": env}
-    given = target | _instantiate(parts.episode, "episode")
-    given |= {name: _instantiate(parts.get(name) or None, name) for name in PAID}
-    if isinstance(env, External | Robot):
-        given |= time_limit(env, given)
-    return build_part(given, where="episode")
+        env = _instantiate(parts.env, "env")
+        check_world(env)
+        target = {"_target_": "hybrid_rl.training.episode.Episode", "env": env}
+        given = target | _instantiate(parts.episode, "episode")
+        given |= {name: _instantiate(parts.get(name) or None, name) for name in PAID}
+        if isinstance(env, External | Robot):
+            given |= time_limit(env, given)
+        return build_part(given, where="episode")
 
 
 def expert(config: DictConfig) -> Controller:
