@@ -96,10 +96,10 @@ class Job:
 
     def shelf(self, loop: Loop, output: Output, stack: ExitStack) -> Shelf:
         """The records, open until the end of `stack`, and the checkpoints."""
-        logs, several = [], len(self.runs) > 1
+        stack.enter_context(naming(self.whole))
+        logs = []
         for run, run_dir in zip(self.runs, self.folders, strict=True):
-            stack.enter_context(naming(run_dir))
-            more = {"run_dir": str(run_dir)} if several else {}
+            more = {"run_dir": str(run_dir)} if len(self.runs) > 1 else {}
             log = RunLog(run_dir, run.seeds, plain(run.config), lambda row, m=more: output(row | m))
             logs.append(stack.enter_context(log))
         folders = [refuse_link(run_dir / "checkpoints") for run_dir in self.folders]
