@@ -287,7 +287,7 @@ def _settings(config: DictConfig, run_dir: Path, given: Mapping[str, str]) -> Di
         raise UsageError(f"{key}={given[key]}: {ONLY}; resume={run_dir} has its own")
     if "total_steps" in given:
         steps = whole("total_steps", config.total_steps)
-        if steps < whole("total_steps", old.total_steps):
+        if steps < old.total_steps:
             line = f"the run in resume={run_dir} has {old.total_steps}"
             raise UsageError(f"total_steps={steps}: {line}; it can be raised, not lowered")
         old.total_steps = steps
