@@ -9,7 +9,7 @@ from typing import Any
 
 import hydra
 from hydra.core.hydra_config import HydraConfig
-from omegaconf import DictConfig, OmegaConf, open_dict
+from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl.cli import arguments, command
 from hybrid_rl.errors import UsageError
@@ -68,10 +68,8 @@ def _sweep(job: Job, words: Sequence[str], folders: Sequence[str]) -> None:
     """Let Hydra's sweeper, cli.sweep, run the jobs."""
 
     def one(config: DictConfig) -> Any:
-        made = HydraConfig.get()
-        with open_dict(config):
-            config.hydra = made
-        return job(configuration.read(config), overrides.of_job(made))
+        made: Any = HydraConfig.get()
+        return job(configuration.read(config, made), overrides.of_job(made))
 
     names = groups(*folders)
     # a choice of one value is for the jobs, too: the default method may lack the part

@@ -135,7 +135,7 @@ class Sweeper:
         for number, job in enumerate(jobs):
             with self._naming(number):
                 composed = loader.load_sweep_config(self.config, self._forced(job))
-                configs.append(configuration.read(composed))
+                configs.append(configuration.read(composed, composed.hydra))
         for number, (job, config) in enumerate(zip(jobs, configs, strict=True)):
             with self._naming(number):
                 self._check(job, config.copy())

@@ -19,7 +19,6 @@ import re
 import sys
 import sysconfig
 from collections.abc import Collection, Iterable, Iterator
-from contextlib import suppress
 from dataclasses import is_dataclass
 from importlib import import_module, metadata
 from importlib.machinery import PathFinder
@@ -165,7 +164,7 @@ def _judge(text: str, near: Path | None) -> None:
             source = _ours(names[1:], ("envs",))
         elif names[:2] == ["gymnasium", "envs"]:
             source = below(names)
-        elif absent(names[0]) or (not name.isidentifier() and registers(names)):
+        elif _tops(names[0]) is None or (not name.isidentifier() and registers(names)):
             continue
         else:
             source = theirs(names, near)
@@ -190,10 +189,7 @@ def theirs(names: list[str], near: Path | None) -> Path:
     """The file of a module of the user; ValueError if there is none."""
     if names[0] == "gymnasium":
         raise ValueError(f"makes {GYMNASIUM}")
-    spec = None
-    with suppress(ImportError, ValueError, AttributeError):
-        spec = find_spec(names[0])  # of the first name alone, so that nothing is imported
-    tops = _tops(spec) if spec else []
+    tops = _tops(names[0])
     ours = PACKAGE.parent if names[0] in CHECKOUT else None
     if not tops or any(top.parent == ours or not _of_user(top.parent) for top in tops):
         raise ValueError(OTHER)
@@ -204,9 +200,14 @@ def theirs(names: list[str], near: Path | None) -> Path:
     return below(names)
 
 
-def _tops(spec: Any) -> list[Path]:
-    """The files or folders of a module that is in no other."""
-    return [Path(top).absolute() for top in spec.submodule_search_locations or [spec.origin or ""]]
+def _tops(name: str) -> list[Path] | None:
+    """The files or folders of a module that is in no other; None: Python finds no such module."""
+    try:
+        spec = find_spec(name)  # of a first name alone, so that nothing is imported
+    except (ImportError, ValueError, AttributeError):  # it is there, in an odd way
+        return []
+    tops = spec and (spec.submodule_search_locations or [spec.origin or ""])
+    return tops and [Path(top).absolute() for top in tops]
 
 
 def below(names: list[str]) -> Path:
@@ -230,14 +231,6 @@ def _of_user(folder: Path) -> bool:
     return not installed and not any(own in (folder, *folder.parents) for own in OF_PYTHON)
 
 
-def absent(name: str) -> bool:
-    """True if Python finds no module `name`."""
-    try:
-        return find_spec(name) is None
-    except (ImportError, ValueError, AttributeError):  # it is there, in an odd way
-        return False
-
-
 def registers(names: list[str]) -> bool:
     """True if a module is an installed package that depends on Gymnasium, and may register ids."""
     try:
@@ -246,7 +239,7 @@ def registers(names: list[str]) -> bool:
         return False
     folder = Path(str(home.locate_file(names[0]))).resolve()
     needs = any(re.match(r"gymnasium\b", each) for each in home.requires or ())
-    return needs and len(names) == 1 and folder in map(Path.resolve, _tops(find_spec(names[0])))
+    return needs and len(names) == 1 and folder in map(Path.resolve, _tops(names[0]) or ())
 
 
 def defines(names: list[str], source: Path, name: str, *kinds: type, depth: int = 5) -> bool:

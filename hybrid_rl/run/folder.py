@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import yaml
-from omegaconf import DictConfig, OmegaConf, open_dict
+from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl.errors import MisfitError, PartError, UsageError, printable
@@ -46,8 +46,7 @@ def claim_folders(configs: Sequence[DictConfig]) -> Iterator[list[Path]]:
                 stack.callback(remove_empty, folder)
         for folder, config in zip(folders, configs, strict=True):
             if several:
-                with open_dict(config):
-                    config.run_dir = str(folder)
+                config.run_dir = str(folder)
             stack.enter_context(lock(folder, "run_dir"))
         files = (run / name for run in (parent, *folders) for name in ("config.yaml", SWEEP))
         if any(map(Path.exists, files)):
@@ -202,5 +201,5 @@ def parse_config(folder: Path, key: str = "runs") -> DictConfig:
     except ValueError as error:
         _check_version(folder, key, values)  # another one may have had such a part
         raise UsageError(f"{path}: {error}") from error
-    defaults: Any = OmegaConf.load(CONF / "train.yaml")
-    return OmegaConf.create(values | {"compile_cache": defaults.compile_cache})
+    here = yaml_file(CONF / "train.yaml")["compile_cache"]
+    return OmegaConf.create(values | {"compile_cache": here})

@@ -96,10 +96,10 @@ class Job:
 
     def shelf(self, loop: Loop, output: Output, stack: ExitStack) -> Shelf:
         """The records, open until the end of `stack`, and the checkpoints."""
-        logs, several = [], len(self.runs) > 1
+        stack.enter_context(naming(self.whole))
+        logs = []
         for run, run_dir in zip(self.runs, self.folders, strict=True):
-            stack.enter_context(naming(run_dir))
-            more = {"run_dir": str(run_dir)} if several else {}
+            more = {"run_dir": str(run_dir)} if len(self.runs) > 1 else {}
             log = RunLog(run_dir, run.seeds, plain(run.config), lambda row, m=more: output(row | m))
             logs.append(stack.enter_context(log))
         folders = [refuse_link(run_dir / "checkpoints") for run_dir in self.folders]
@@ -184,8 +184,7 @@ def train_built(run: Run, output: Output) -> dict[str, Any]:
     """Run what is built, in a new folder or on from the checkpoints in `config.resume`."""
     if run.config.resume is None:
         return _begin(Job([run]), output)
-    run_dir = Path(str(run.config.resume))
-    with lock(run_dir, "run_dir"):
+    with lock(Path(run.config.resume), "run_dir") as run_dir:
         return _run(Job([run], [run_dir]), output)
 
 
@@ -288,7 +287,7 @@ def _settings(config: DictConfig, run_dir: Path, given: Mapping[str, str]) -> Di
         raise UsageError(f"{key}={given[key]}: {ONLY}; resume={run_dir} has its own")
     if "total_steps" in given:
         steps = whole("total_steps", config.total_steps)
-        if steps < whole("total_steps", old.total_steps):
+        if steps < old.total_steps:
             line = f"the run in resume={run_dir} has {old.total_steps}"
             raise UsageError(f"total_steps={steps}: {line}; it can be raised, not lowered")
         old.total_steps = steps

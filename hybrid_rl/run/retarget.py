@@ -81,7 +81,6 @@ def retargeted(
     now = _aimed(trained, goal, config_dir)
     if not worlds:
         return now
-    assert now.config is not None
     episode = disturbed(now.config, typed_values(worlds))
     episode, acting = acting_in(episode, now.controllers)
     return replace(now, episode=episode, controllers=acting)
@@ -126,7 +125,6 @@ def _aimed(
 
 def _adjusted(trained: Trained, overrides: Sequence[str]) -> Trained:
     """`trained` with other values of keys of the planner that acts in it, planner.KEY=VALUE."""
-    assert trained.config is not None
     acting = [text.replace("planner", "controllers.full", 1) for text in overrides]
     config = _with(trained.config, typed_values(acting))
     try:

@@ -63,7 +63,7 @@ class Trained:
     seeds: tuple[int, ...]
     step: int  # decisions of each learner
     notes: tuple[str, ...]  # on how it was made
-    config: DictConfig | None = field(default=None, repr=False)  # at least env, episode
+    config: DictConfig = field(default_factory=OmegaConf.create, repr=False)  # has env, episode
     agent: Agent | None = field(default=None, repr=False)  # of the run; None: of a policy's file
 
     def policy(self, seed: int | None = None, mode: str = "full", key: int = 0) -> "TrainedPolicy":

@@ -27,6 +27,7 @@ from hybrid_rl.run.schedule import Pace, Schedule, Speed
 from hybrid_rl.run.start import Start
 from hybrid_rl.training.loop import Loop
 
+Failures = Mapping[int, tuple[int, str]]  # learner -> (step, quantity that is not finite)
 RETURNS = [f"{prefix}return" for prefix in EVALUATED.values()]  # the first of them is the result
 
 
@@ -47,13 +48,9 @@ class Session:
     pace: Pace = field(default_factory=Pace)
     program: Any = None  # compiled
     compile_s: float = 0.0  # [s] that compiling took
-    evaluations: Evaluations | None = None  # compiled
-
-    def __post_init__(self) -> None:
-        """Create the record."""
-        seeds = self.loop.seeds
-        self.record = Record([[] for _ in seeds], [None for _ in seeds])
-        self._sound: dict[int, Any] = {}  # the states that replace those of learners that diverged
+    evaluations: Evaluations = field(init=False)  # compiled
+    record: Record = field(init=False)
+    sound: dict[int, Any] = field(default_factory=dict)  # states instead of those that diverged
 
     @property
     def step(self) -> int:
@@ -77,6 +74,8 @@ class Session:
 
     def begin(self, start: Start | None = None) -> None:
         """Start from the first state, or with what another run knows, which is evaluated first."""
+        seeds = self.loop.seeds
+        self.record = Record([[] for _ in seeds], [None for _ in seeds])
         with self.progress.doing("starting"):
             self.state = self.loop.init()
         if start is not None:
@@ -165,20 +164,16 @@ class Session:
         worlds = self.loop.agent.num_envs
         infinite = records.infinite(metrics, start, worlds)
         if jax.config.jax_debug_nans:
-            infinite = unsound(self.state.learners, self.step) | infinite
-        ended = self._end(infinite)
-        episodes = records.episodes(metrics, start, worlds, self.record.ends)
-        for row in episodes:
+            infinite = {**unsound(self.state.learners, self.step), **infinite}
+        for row in self._write(records.episodes(metrics, start, worlds), infinite):
             pair = (row["step"], float(row["train/return"]))
             self.record.returns[row["learner"]].append(pair)
-        self._write(episodes + ended, repair=bool(infinite))
         self.record.sums = records.added(self.record.sums, metrics)
         if self.schedule.row_due(self.step, worlds):
-            learners = len(self.loop.seeds)
-            means = records.means(self.record.sums, learners, self.step, self.record.ends)
+            means = records.means(self.record.sums, len(self.loop.seeds), self.step)
             self.record.sums = {}
             perf = {"perf/compile_s": self.compile_s} | self._speed(len(self.shelf.logs))
-            self.shelf.write([row | perf for row in means], self.wall_s)
+            self._write([row | perf for row in means], {})
 
     def _speed(self, folders: int = 1) -> dict[str, float]:
         """Decisions of all learners per second since the last row; empty before they learn.
@@ -190,7 +185,6 @@ class Session:
 
     def _evaluate(self) -> None:
         """The outcomes of every evaluated mode, unless a signal comes."""
-        assert self.evaluations is not None
         with self.progress.doing("evaluating"):
             params = self.loop.params(self.state)
             outcomes = self.evaluations(params, lambda: self.stop is not None)
@@ -203,18 +197,16 @@ class Session:
             for name in reversed(outcome)  # the first of them stays
             if not np.isfinite(outcome[name])
         }
-        ended = self._end(infinite)
-        left = {s: o for s, o in enumerate(outcomes) if s not in self.record.ends}
-        rows_left = [{"step": self.step, "learner": s} | each for s, each in left.items()]
-        self._write(rows_left + ended, repair=bool(ended))
+        rows = [{"step": self.step, "learner": s} | each for s, each in enumerate(outcomes)]
+        left = self._write(rows, infinite)
         result = next(key for key in RETURNS if key in outcomes[0])
-        for s, outcome in left.items():
-            self.record.final_eval[s] = outcome[result]
-        means = {n: float(np.mean([each[n] for each in left.values()])) for n in outcomes[0]}
+        for row in left:
+            self.record.final_eval[row["learner"]] = row[result]
+        means = {name: float(np.mean([row[name] for row in left])) for name in outcomes[0]}
         self._show({**means, "eval/return": means[result]}, say=True)
 
-    def _end(self, failures: Mapping[int, tuple[int, str]]) -> list[Row]:
-        """A row for each learner that diverged just now; failures: learner -> (step, quantity)."""
+    def _end(self, failures: Failures) -> list[Row]:
+        """A row for each learner that diverged just now."""
         loop, rows = self.loop, []
         for s, (step, quantity) in sorted(failures.items()):
             if s in self.record.ends:
@@ -229,25 +221,40 @@ class Session:
             self.progress.note(f"{line}; it ends here, the others continue")
         return rows
 
-    def _write(self, rows: Sequence[Row], repair: bool) -> None:
-        """Write rows; raise DivergenceError if no learner is left; `repair` those that have ended.
+    def _write(self, rows: Sequence[Row], failures: Failures) -> list[Row]:
+        """Write rows, of a learner that diverged only those before its end; returns these.
+
+        Raises DivergenceError if no learner is left.
+        """
+        new, ends = self._end(failures), self.record.ends
+        rows = [
+            row
+            for row in rows
+            if row["learner"] not in ends or row["step"] < ends[row["learner"]]["step"]
+        ]
+        each = sorted([*rows, *new], key=lambda row: (row["step"], row["learner"]))
+        self.shelf.write(each, self.wall_s)
+        if not self.left:
+            raise DivergenceError(failure_line([*ends.values()], 0, self.shelf.newest))
+        if failures:
+            self._repair()
+        return rows
+
+    def _repair(self) -> None:
+        """Give the learners that have ended sound states.
 
         The program computes all learners together, so one that has ended is still computed, from
         the state of its last sound checkpoint, or its initial state.
         """
-        rows = sorted(rows, key=lambda row: (row["step"], row["learner"]))
-        self.shelf.write(rows, self.wall_s)
-        if not self.left:
-            ends = list(self.record.ends.values())
-            raise DivergenceError(failure_line(ends, 0, self.shelf.newest))
-        for s in self.record.ends if repair else ():
-            if s not in self._sound:
-                self._sound[s] = self.shelf.learner(s)
-            self.state = self.loop.with_learner(self.state, s, self._sound[s])
+        for s in self.record.ends:
+            if s not in self.sound:
+                self.sound[s] = self.shelf.learner(s)
+            self.state = self.loop.with_learner(self.state, s, self.sound[s])
 
     def _save(self) -> None:
         """Write a checkpoint."""
-        self._write(self._end(unsound(self.state.learners, self.step)), repair=True)
+        self._write([], unsound(self.state.learners, self.step))
+        self._repair()
         now = replace(self.record, wall_s=self.wall_s)
         with self.progress.doing("saving"):
             self.shelf.save(self.state, now)
@@ -271,8 +278,8 @@ class Session:
         return means
 
 
-def unsound(learners: Any, step: int) -> dict[int, tuple[int, str]]:
-    """Learner -> (step, name) of a learned number [S, ...] that is not finite."""
+def unsound(learners: Any, step: int) -> Failures:
+    """The learners with a learned number [S, ...] that is not finite at `step`."""
     failures: dict[int, tuple[int, str]] = {}
     for path, leaf in jax.tree_util.tree_leaves_with_path(learners):
         if jnp.issubdtype(leaf.dtype, jnp.floating):

@@ -38,7 +38,6 @@ FOREIGN = re.compile(r"\$\{[^}]*:|^\+*(hydra|(?!demonstrations=)[\w@]+=[^=]*\.\.
 WORLD = ("env", "episode", "constraint", "num_envs")  # keys on which what is remembered depends
 PASSING = ("episode.steps", "env.physics")  # but not on these
 PRETRAIN = 4000  # gradient steps on a memory with other rewards, before a policy for them acts
-RELABELLED = ", with the rewards that they earn now"
 
 
 def add_recipe(texts: Sequence[str], config_dir: str | Path | None = None) -> list[str]:
@@ -112,29 +111,31 @@ def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:
     unread = config.copy()
     unread.pretrain = 0
     run = configuration.build(unread)
-    holds, why = _remembers(run.agent.episode, config, then)
+    same = _flat(then, "reward") == _flat(config, "reward")
+    lost = _lost(run.agent.episode, config, then, same)
     if config.pretrain is None:
-        config.pretrain = PRETRAIN if why == RELABELLED else 0
+        config.pretrain = 0 if same or lost else PRETRAIN
     try:
         seeds = range(then.seed, then.seed + then.num_seeds)
-        wanted = ["learners", "memory"] if holds else ["learners"]
+        wanted = ["learners"] if lost else ["learners", "memory"]
         step, state, _, notes = read_parts(source / "checkpoints", run.agent, seeds, wanted)
     except MisfitError as error:
         line = f"its parameters do not fit: {str(error).partition(': ')[2]}"
         raise UsageError(f"run={source}: {line}") from error
     demonstrated, remembered = run.agent.replay.num_demonstrated(run.agent.num_envs), 0
     memory = state.memory
-    words = f"memory: {'the demonstrations alone' if demonstrated else 'empty'}, since {why}"
+    words = f"memory: {'the demonstrations alone' if demonstrated else 'empty'}, since {lost}"
     if memory is not None:
         filled = min(int(memory.count.min()), memory.rows.shape[1])
         remembered = max(filled - demonstrated, 0)
-        words = f"memory: its last {filled * run.agent.num_envs:,} decisions{why}"
+        words = f"memory: its last {filled * run.agent.num_envs:,} decisions"
+        words += "" if same else ", with the rewards that they earn now"
     with open_dict(config):
         config.begun = {"step": step, "remembered": remembered, "memory": words}
     run = configuration.build(config)  # with room for what it remembers
     if memory is not None:
-        memory = _rewritten(run.agent, memory, why == RELABELLED)
-    if why:  # they imagined other rewards, or another world
+        memory = _rewritten(run.agent, memory, not same)
+    if lost or not same:  # they imagined other rewards, or another world
         state = state.replace(learners=forgotten(state.learners))
     learners, memory = jax.tree.map(lambda leaf: leaf[numbers], (state.learners, memory))
     known = [name for learner in run.agent.learners.values() for name in learner.owns]
@@ -161,18 +162,18 @@ def _flat(config: DictConfig, *names: str) -> dict[str, Any]:
     return {key: value for key, value in flatten_keys(chosen).items() if ".world." not in key}
 
 
-def _remembers(episode: Episode, config: DictConfig, then: DictConfig) -> tuple[bool, str]:
-    """Whether the memory of a run is true in the new one, and a word on it."""
+def _lost(episode: Episode, config: DictConfig, then: DictConfig, same: bool) -> str:
+    """Why the memory of a run is not true in the new one; "" if it is.
+
+    same: whether both have the same reward.
+    """
     before, now = (_flat(made, *WORLD) for made in (then, config))
     differ = [key for key in {**before, **now} if before.get(key) != now.get(key)]
     if differ := [key for key in differ if key not in PASSING]:
-        return False, f"{_listed(differ[:3])} differ{'' if differ[1:] else 's'}"
+        return f"{_listed(differ[:3])} differ{'' if differ[1:] else 's'}"
     if not then.checkpoint_replay:
-        return False, "checkpoints of that run hold none"
-    same = _flat(then, "reward") == _flat(config, "reward")
-    if not same and not _follows(episode):
-        return False, "reward differs"
-    return True, "" if same else RELABELLED
+        return "checkpoints of that run hold none"
+    return "" if same or _follows(episode) else "reward differs"
 
 
 def _follows(episode: Episode) -> bool:

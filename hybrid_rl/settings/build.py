@@ -10,7 +10,7 @@ from typing import Any
 
 from hydra import compose, initialize_config_dir
 from hydra.core.global_hydra import GlobalHydra
-from omegaconf import DictConfig, ListConfig, OmegaConf, open_dict
+from omegaconf import DictConfig, ListConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl.envs.adapters.external import External, check_world
@@ -94,7 +94,8 @@ def compose_raw(overrides: Sequence[str], config_dir: str | Path | None = None) 
         others = [text for text in words if name(text) == "hydra.searchpath"]
         paths = ",".join(text.partition("=[")[2].rstrip("]") for text in (own, *others))
         words = [f"hydra.searchpath=[{paths}]", *(text for text in words if text not in others)]
-    return read(composed("train", words, return_hydra_config=True))
+    config = composed("train", words, return_hydra_config=True)
+    return read(config, config.hydra)
 
 
 def composed(name: str, words: list[str], **options: Any) -> DictConfig:
@@ -108,17 +109,17 @@ def composed(name: str, words: list[str], **options: Any) -> DictConfig:
         raise UsageError(explain(error)) from error
 
 
-def read(config: DictConfig) -> DictConfig:
+def read(config: DictConfig, hydra: DictConfig) -> DictConfig:
     """What a run reads: its sections and all that they refer to, parts complete.
 
-    config: as Hydra composed it, with Hydra's own part. UsageError for a typed key that it lacks.
+    config: as Hydra composed it; hydra: Hydra's own part. UsageError for a typed key that it lacks.
     """
     config = config.copy()
-    with open_dict(config):
-        hydra = config.pop("hydra")
+    OmegaConf.set_struct(config, False)  # it gets keys
     complete_names(config, hydra)
     adopt_planner(config, hydra)
     raw = plain(config)
+    raw.pop("hydra", None)
     typed = typed_keys(hydra) if raw["resume"] is None else []
     # a part that lacks a key of `settings` keeps what it has
     raw = complete(raw, (*READ, "sweep"), [*typed, *settings_keys(hydra)])
@@ -157,9 +158,9 @@ def build(config: DictConfig) -> Run:
     check(config)
     rounds = -(-config.total_steps // config.num_envs)
     remembered = config.get("begun", {}).get("remembered", 0)  # decisions of each environment
+    episode, controllers = acting(config)
     with _usage(config) as parts:
         set_schedules(parts.learners, config.total_steps)
-        episode, controllers = _acting(parts)
         agent = Agent(
             episode,
             controllers["full"],
@@ -175,35 +176,25 @@ def build(config: DictConfig) -> Run:
     return Run(config, agent, {mode: c.greedy() for mode, c in controllers.items()})
 
 
-def _acting(parts: DictConfig) -> tuple[Episode, dict[str, Controller]]:
-    """The episodes, and the controllers as they act in training."""
-    episode = _episode(parts)  # first, as controllers may hold their reward, too
-    each = ((k, _instantiate(v, f"controllers.{k}")) for k, v in parts.controllers.items())
-    return acting_in(episode, dict(each), PENDING * isinstance(episode.env, Robot))
-
-
 def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller]]:
-    """The episodes of `config`, and its controllers."""
+    """The episodes of `config`, and its controllers as they act in training."""
+    episode = episodes(config)  # first, as controllers may hold their reward, too
     with _usage(config) as parts:
-        return _acting(parts)
+        each = ((k, _instantiate(v, f"controllers.{k}")) for k, v in parts.controllers.items())
+        return acting_in(episode, dict(each), PENDING * isinstance(episode.env, Robot))
 
 
 def episodes(config: DictConfig) -> Episode:
     """The episodes of `config`, without its method."""
     with _usage(config) as parts:
-        return _episode(parts)
-
-
-def _episode(parts: DictConfig) -> Episode:
-    """The episodes of the sections `env` and `episode`."""
-    env = _instantiate(parts.env, "env")
-    check_world(env)
-    target = {"_target_": "hybrid_rl.training.episode.Episode", "env": env}
-    given = target | _instantiate(parts.episode, "episode")
-    given |= {name: _instantiate(parts.get(name) or None, name) for name in PAID}
-    if isinstance(env, External | Robot):
-        given |= time_limit(env, given)
-    return build_part(given, where="episode")
+        env = _instantiate(parts.env, "env")
+        check_world(env)
+        target = {"_target_": "hybrid_rl.training.episode.Episode", "env": env}
+        given = target | _instantiate(parts.episode, "episode")
+        given |= {name: _instantiate(parts.get(name) or None, name) for name in PAID}
+        if isinstance(env, External | Robot):
+            given |= time_limit(env, given)
+        return build_part(given, where="episode")
 
 
 def expert(config: DictConfig) -> Controller:

@@ -7,7 +7,7 @@ from typing import Any
 
 import yaml
 from hydra.errors import HydraException, MissingConfigException, OverrideParseException
-from omegaconf import DictConfig, OmegaConf, open_dict
+from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl.errors import UsageError, install, relative
@@ -102,11 +102,10 @@ def adopt_planner(config: DictConfig, hydra: Any) -> None:
         return
     typed = (overrides.name(text).split(".") for text in overrides.of_job(hydra))
     own = {*OmegaConf.load(file), *(key[0] for group, *key in typed if group == "planner" and key)}
-    with open_dict(config):
-        config.planner = OmegaConf.masked_copy(config.planner, sorted(own))
-        config.controllers.full = "${planner}"
-        if "model_planner" in config:
-            config.model_planner = "${planner}"
+    config.planner = OmegaConf.masked_copy(config.planner, sorted(own))
+    config.controllers.full = "${planner}"
+    if "model_planner" in config:
+        config.model_planner = "${planner}"
 
 
 def complete_names(config: DictConfig, hydra: Any) -> None:
@@ -127,5 +126,4 @@ def complete_names(config: DictConfig, hydra: Any) -> None:
         if group == "task" and lacking:
             raise UsageError(f"{relative(file)}: lacks {', '.join(lacking)}; {INHERIT}")
         if group not in OmegaConf.load(file):
-            with open_dict(config):
-                config[group] = file.stem
+            config[group] = file.stem

@@ -106,9 +106,9 @@ class Shelf:
                 metrics_bytes=size,
             )
             ends = [end for s, end in record.ends.items() if share.start <= s < share.stop]
-            own = state if self.replay else state.replace(memory=None)
-            if len(self.folders) > 1:  # of which the configuration has the numbers
-                own = jax.tree.map(lambda leaf, at=share: leaf[at], own.replace(numbers={}))
+            own = state.replace(numbers={})  # which the configuration has
+            own = own if self.replay else own.replace(memory=None)
+            own = jax.tree.map(lambda leaf, at=share: leaf[at], own)  # of all, no copy
             meta = {
                 "seeds": list(self.loop.seeds[share]),
                 "capacity": self.loop.agent.replay.capacity,

@@ -7,7 +7,7 @@ seed in a file.
 
 import json
 import math
-from collections.abc import Container, Mapping
+from collections.abc import Mapping
 from types import NoneType
 from typing import Any
 
@@ -123,33 +123,23 @@ def of_world(name: str) -> bool:
     return name.startswith("world/") and name != ACTION
 
 
-def episodes(
-    metrics: Metrics, start: int, worlds: int, ended: Mapping[int, Mapping[str, Any]]
-) -> list[Row]:
-    """A row per episode that ended in the rounds after `start`.
-
-    ended: learner -> where it diverged, with "step"; it has no rows from there on.
-    """
+def episodes(metrics: Metrics, start: int, worlds: int) -> list[Row]:
+    """A row per episode that ended in the rounds after `start`."""
     return [
         {
-            "step": step,
+            "step": start + (int(i) + 1) * worlds,
             "learner": int(s),
             "train/return": metrics["episode/return"][i, s, e],
             "train/length": int(metrics["episode/length"][i, s, e]),
         }
         for i, s, e in np.argwhere(metrics["episode/done"])
-        if (step := start + (int(i) + 1) * worlds) < ended.get(int(s), {}).get("step", np.inf)
     ]
 
 
-def means(sums: Sums, learners: int, end: int, ended: Container[int] = ()) -> list[Row]:
-    """A row of means per learner, without names that have no values.
-
-    ended: learners that diverged, which have no row.
-    """
+def means(sums: Sums, learners: int, end: int) -> list[Row]:
+    """A row of means per learner, without names that have no values."""
     return [
         {"step": end, "learner": s}
         | {name: total[s] / count[s] for name, (total, count) in sums.items() if count[s]}
         for s in range(learners)
-        if s not in ended
     ]
