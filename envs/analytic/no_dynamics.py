@@ -16,7 +16,7 @@ from jax import Array
 
 from hybrid_rl.envs.analytic.state import Euclidean, phi
 from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.types import EnvState, Spec
+from hybrid_rl.types import Spec
 
 DT = 0.2  # [s] of a decision
 
@@ -40,7 +40,3 @@ class NoDynamics(Euclidean):
         return u + 0 * x
 
     scene = mjcf.scene("no_dynamics.xml")
-
-    def pose(self, state: EnvState) -> Array:
-        """Joint positions qpos [1] for rendering."""
-        return state.data
