@@ -11,13 +11,12 @@ is 0.05 s; never terminates.
 Source: Gymnasium's Pendulum-v1.
 """
 
-from dataclasses import dataclass
-
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.fields import part
 from hybrid_rl.types import EnvState, Spec
 
 DT = 0.05  # [s] of a decision
@@ -25,7 +24,7 @@ TORQUE = 2.0  # [N m]
 MAX_SPEED = 8.0  # [rad/s]
 
 
-@dataclass(frozen=True)
+@part
 class Pendulum:
     """Pendulum swing-up."""
 
