@@ -51,8 +51,10 @@ def studies() -> dict[str, tuple[str, str]]:
 
 def study_of(name: str) -> ModuleType:
     """The study of this name: one that is listed, or a module on Python's path."""
-    if name in (known := studies()):
-        return import_module(known[name][0])
+    known = studies()
+    if name in known:
+        module, _ = known[name]
+        return import_module(module)
     try:
         study = import_module(name)
     except ModuleNotFoundError as error:
