@@ -35,11 +35,7 @@ class Cartpole(Body):
     reward: Literal["cos", "dm_control"] = "cos"
 
     _asset = "cartpole.xml"
-
-    @property
-    def spec(self) -> Spec:
-        """Observation size, action size and decision interval."""
-        return Spec(obs=5, act=1, dt=0.0165)
+    spec = Spec(obs=5, act=1, dt=0.0165)
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""

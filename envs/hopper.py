@@ -8,15 +8,14 @@ o [11]; a: three torques, as fractions of 200 N m; rewards, start and decisions:
 Source: Erez, Tassa, Todorov 2011; parameters of Gymnasium's Hopper-v5; pybullet_envs.
 """
 
-from dataclasses import dataclass
-
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.locomotion import PlanarLegs
+from hybrid_rl.fields import part
 
 
-@dataclass(frozen=True)
+@part
 class Hopper(PlanarLegs):
     """Hopper; `physics` is native, mjx, warp or auto."""
 

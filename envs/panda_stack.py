@@ -38,7 +38,7 @@ from jax import Array
 from jax.numpy.linalg import norm
 
 from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.envs.mujoco.kinematics import Chain, damped_inverse, rotate_towards, stay_within
+from hybrid_rl.envs.mujoco.kinematics import Chain, joint_rates, stay_within
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, Simulator
 from hybrid_rl.fields import NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
@@ -141,11 +141,9 @@ class PandaStack:
     def servo(self, data: PhysicsState, velocity: Array) -> Array:
         """Joint velocities [7] [rad/s] that move the hand by `velocity` [3] [m/s]."""
         upright = jnp.asarray(TOOL.constant_pose(READY)[1])
-        tool, rotation, jacobian = TOOL.pose(data.qpos)
-        linear = stay_within(velocity, tool, self.low, self.high)
-        twist = jnp.concatenate((linear, rotate_towards(rotation, upright, self.hold)))
-        back = self.posture * (jnp.asarray(READY, jnp.float32) - data.qpos[:7])
-        return damped_inverse(jacobian, twist, self.damping, back)
+        pose, away = TOOL.pose(data.qpos), jnp.asarray(READY, jnp.float32) - data.qpos[:7]
+        linear = stay_within(velocity, pose[0], self.low, self.high)
+        return joint_rates(pose, linear, upright, away, self)
 
     def points(self, state: EnvState, obs: Array) -> Array:
         """Positions [T+1, n, 3] [m] along observations [T+1, o] from `state`, for drawing.

@@ -26,13 +26,7 @@ from jax import Array
 from hybrid_rl.envs.analytic.contact_plane import ContactPlane, drawn, metrics_of, solid
 from hybrid_rl.envs.analytic.point_mass import DT, move
 from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.envs.mujoco.kinematics import (
-    Chain,
-    damped_inverse,
-    quat_multiply,
-    rotate,
-    rotate_towards,
-)
+from hybrid_rl.envs.mujoco.kinematics import Chain, joint_rates, quat_multiply, rotate
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, Simulator
 from hybrid_rl.envs.sawyer_push import HOME
 from hybrid_rl.fields import NotNegative, Positive, part
@@ -135,12 +129,10 @@ class SawyerProbe:
 
     def _rates(self, qpos: Array, pose: tuple[Array, Array, Array], velocity: Array) -> Array:
         """Joint velocities [7] [rad/s] that move the tip from `pose` by `velocity` [2] [m/s]."""
-        (tip, rotation, jacobian), (home, leaning) = pose, TIP.constant_pose(HOME)
-        turn = rotate_towards(rotation, _upright(jnp.asarray(leaning)), self.hold)
-        rise = self.hold * (jnp.asarray(home[2:]) - tip[2:])
-        back = self.posture * (jnp.asarray(HOME, jnp.float32) - qpos)
-        twist = jnp.concatenate([velocity, rise, turn])
-        return damped_inverse(jacobian, twist, self.damping, back)
+        home, leaning = TIP.constant_pose(HOME)
+        rise = self.hold * (jnp.asarray(home[2:]) - pose[0][2:])
+        linear, away = jnp.concatenate([velocity, rise]), jnp.asarray(HOME, jnp.float32) - qpos
+        return joint_rates(pose, linear, _upright(jnp.asarray(leaning)), away, self)
 
     def _reached(self, p: Array, q: Array) -> Array:
         """Angles [7] that bring the tip to p [2], by Newton's method from q [7]."""

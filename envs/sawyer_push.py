@@ -31,7 +31,7 @@ from jax import Array
 
 from hybrid_rl.core.poses import rotated
 from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.envs.mujoco.kinematics import Chain, damped_inverse, rotate_towards, stay_within
+from hybrid_rl.envs.mujoco.kinematics import Chain, joint_rates, stay_within
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, Simulator
 from hybrid_rl.fields import Discount, NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
@@ -119,14 +119,10 @@ class SawyerPush:
     def servo(self, data: PhysicsState, velocity: Array) -> Array:
         """Joint velocities [7] [rad/s] that move the tip by `velocity` [2] [m/s]."""
         home, upright = TIP.constant_pose(HOME)
-        tip, rotation, jacobian = TIP.pose(data.qpos)
-        planar = stay_within(velocity, tip[:2], self.low, self.high)
-        rise = self.hold * (home[2:] - tip[2:])
-        twist = jnp.concatenate(
-            (planar, rise, rotate_towards(rotation, jnp.asarray(upright), self.hold))
-        )
-        back = self.posture * (jnp.asarray(HOME, jnp.float32) - data.qpos[:7])
-        return damped_inverse(jacobian, twist, self.damping, back)
+        pose, away = TIP.pose(data.qpos), jnp.asarray(HOME, jnp.float32) - data.qpos[:7]
+        planar = stay_within(velocity, pose[0][:2], self.low, self.high)
+        linear = jnp.concatenate((planar, self.hold * (home[2:] - pose[0][2:])))
+        return joint_rates(pose, linear, jnp.asarray(upright), away, self)
 
     def reward_of(self, x: Array, u: Array, after: Array) -> Array:
         """The reward [] of action u [2] that led to the observation `after` [o]; x is not used."""

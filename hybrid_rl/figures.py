@@ -38,10 +38,10 @@ ARGUMENTS = (  # of every study
 FROM = Argument("from", "", "instead of runs: the JSON of a picture, which is drawn again")
 
 
-def _listing(known: dict[str, str]) -> str:
+def _listing(known: dict[str, tuple[str, str]]) -> str:
     """The studies as text, one line each."""
     width = max(map(len, known))
-    return "\n".join(f"  {name:{width}}  {about}" for name, about in known.items())
+    return "\n".join(f"  {name:{width}}  {about}" for name, (_, about) in known.items())
 
 
 def main() -> None:

@@ -281,7 +281,6 @@ class Known(NamedTuple):
 @cache
 def _known(env: External) -> Known:
     """What one copy declares."""
-    one = None
     try:
         one = env.one()
         fault, dt = _fault(one), env.dt or _time_step(one)  # some declare it in a reset
@@ -289,10 +288,9 @@ def _known(env: External) -> Known:
     except UsageError:
         raise
     except FAULTS as error:
-        dt, fault = 0.0, blame(error)
-    if fault:
+        one, dt, fault = None, 0.0, blame(error)
+    if fault or one is None:
         raise UsageError(f"env.{'make' if env.make else 'id'}={env.name}: {fault}")
-    assert one is not None
     space, obs, seen = one.action_space, one.observation_space, one.env.observation_space
     assert isinstance(space, Box)
     limit = None

@@ -8,20 +8,19 @@ measurements of the cart and double pendulum; never terminates.
 Source: thesis section 6.3.1, Bayesian optimisation without dynamics.
 """
 
-from dataclasses import dataclass
-
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.analytic.state import Euclidean, phi
 from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.types import EnvState, Spec
+from hybrid_rl.fields import part
+from hybrid_rl.types import Spec
 
 DT = 0.2  # [s] of a decision
 
 
-@dataclass(frozen=True)
+@part
 class NoDynamics(Euclidean):
     """A point that moves to any position within one decision."""
 
@@ -40,7 +39,3 @@ class NoDynamics(Euclidean):
         return u + 0 * x
 
     scene = mjcf.scene("no_dynamics.xml")
-
-    def pose(self, state: EnvState) -> Array:
-        """Joint positions qpos [1] for rendering."""
-        return state.data

@@ -11,13 +11,12 @@ is 0.05 s; never terminates.
 Source: Gymnasium's Pendulum-v1.
 """
 
-from dataclasses import dataclass
-
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.fields import part
 from hybrid_rl.types import EnvState, Spec
 
 DT = 0.05  # [s] of a decision
@@ -25,7 +24,7 @@ TORQUE = 2.0  # [N m]
 MAX_SPEED = 8.0  # [rad/s]
 
 
-@dataclass(frozen=True)
+@part
 class Pendulum:
     """Pendulum swing-up."""
 
@@ -35,13 +34,14 @@ class Pendulum:
         """A random initial state."""
         bounds = jnp.array([jnp.pi, 1.0], jnp.float32)
         x = jax.random.uniform(key, (2,), jnp.float32, -bounds, bounds)
-        return _state(x, jnp.float32(0.0))
+        return EnvState(x, self.from_local(x), jnp.float32(0.0))
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state after one decision. action: [1] in [-1, 1]."""
         theta, w = state.data
         u = TORQUE * jnp.clip(action[0], -1.0, 1.0)
-        return _state(_next(theta, w, u), _reward(theta, w, u))
+        x = _next(theta, w, u)
+        return EnvState(x, self.from_local(x), _reward(theta, w, u))
 
     def reward_of(self, x: Array, u: Array, after: Array) -> Array:
         """The reward [] of action u [1] at x [3], which led to `after` [3]."""
@@ -53,7 +53,7 @@ class Pendulum:
 
     def dynamics(self, x: Array, u: Array) -> Array:
         """The next observation [3] after action u [1] at x [3]."""
-        return _obs(_next(jnp.arctan2(x[1], x[0]), x[2], TORQUE * u[0]))
+        return self.from_local(_next(jnp.arctan2(x[1], x[0]), x[2], TORQUE * u[0]))
 
     def equilibrium(self) -> tuple[Array, Array]:
         """Upright and at rest."""
@@ -65,7 +65,7 @@ class Pendulum:
 
     def from_local(self, e: Array) -> Array:
         """The observation [3] at local coordinates e [2]."""
-        return _obs(e)
+        return jnp.stack((jnp.cos(e[0]), jnp.sin(e[0]), e[1]))
 
     scene = mjcf.scene("pendulum.xml")
 
@@ -84,13 +84,3 @@ def _reward(theta: Array, w: Array, u: Array) -> Array:
     """The reward [] of torque u [] [N m] at an angle and angular velocity []."""
     error = (theta + jnp.pi) % (2 * jnp.pi) - jnp.pi
     return -(error**2 + 0.1 * w**2 + 0.001 * u**2)
-
-
-def _obs(x: Array) -> Array:
-    """Observation [3] of x = (theta [rad], w [rad/s]) [2]."""
-    return jnp.stack((jnp.cos(x[0]), jnp.sin(x[0]), x[1]))
-
-
-def _state(x: Array, reward: Array) -> EnvState:
-    """State at x = (theta [rad], w [rad/s]) [2]."""
-    return EnvState(x, _obs(x), reward)

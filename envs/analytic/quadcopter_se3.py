@@ -31,7 +31,6 @@ DT, THRUST, G, MASS = 0.005, 6.0, 9.81, 0.6  # [s], u at a = 1, [m/s^2], [kg]
 INERTIA = (0.04, 0.0375, 0.0675)  # [kg m^2]
 ARM, KT, KM = 0.2, 0.6, 0.15  # [m], [N], [N m]
 DRAG_V, DRAG_W = (0.4, 0.4, 2.0), (2.0, 2.0, 0.4)  # [1/s]
-CLOCK = "clock"  # in `info`: decisions since the reset
 
 
 @part
@@ -60,7 +59,7 @@ class QuadcopterSE3:
             angles = jax.random.uniform(jax.random.fold_in(key, 2), (3,), jnp.float32, -1, 1)
             about_x, about_y, about_z = map(_turned, jnp.eye(3), self.turn * angles)
             x = x.at[3:12].set((about_z @ about_y @ about_x).reshape(9))
-        info = {CLOCK: jnp.zeros((), jnp.int32)} if self._faulty else {}
+        info = {"clock": jnp.zeros((), jnp.int32)} if self._faulty else {}
         metrics = _metrics(x, hover.astype(jnp.float32))
         state = fully_observed(x, jnp.float32(0.0)).replace(metrics=metrics, info=info)
         return sensor_noise.begin(state, self.sensor_noise, jax.random.fold_in(key, 3))
@@ -70,9 +69,9 @@ class QuadcopterSE3:
         u, info = jnp.clip(action, -1.0, 1.0), {}
         thrust, wind = u, None
         if self._faulty:
-            begun = state.info[CLOCK] >= round(self.fault_time / DT)
+            begun = state.info["clock"] >= round(self.fault_time / DT)
             thrust = u.at[0].multiply(jnp.where(begun, 1 - self.rotor_loss, 1.0))
-            wind, info = jnp.where(begun, self.wind, 0.0), {CLOCK: state.info[CLOCK] + 1}
+            wind, info = jnp.where(begun, self.wind, 0.0), {"clock": state.info["clock"] + 1}
         x = self.dynamics(state.data, thrust, wind)
         reward = self.reward_of(state.data, u, x)
         after = fully_observed(x, reward, self.terminate & (x[11] < 0))

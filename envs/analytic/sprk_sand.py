@@ -36,7 +36,6 @@ from hybrid_rl.types import EnvState, Spec
 DT, SUBSTEPS = 1 / 30, 4  # [s] of a decision, its Runge-Kutta steps
 K, D1, D2, MU, TAU = 4.0, 1.5, 3.0, 0.6, 0.1  # [m/s^2], [1/s], [1/m], [m/s^2], [s]
 CREEP = 0.02  # [m/s] at which dry friction is almost complete
-CLOCK = "clock"  # in `info`: decisions since the reset
 
 
 class Ball(NamedTuple):
@@ -72,7 +71,7 @@ class SprkSand:
         """The state after one decision. action: [2] in [-1, 1]."""
         a = jnp.clip(action, -1.0, 1.0)
         ball = rk4(lambda ball: self._rate(ball, a), state.data, DT / SUBSTEPS, SUBSTEPS)
-        after = self._state(ball, a, state.info[CLOCK] + 1)
+        after = self._state(ball, a, state.info["clock"] + 1)
         after = sensor_noise.resume(after, self._std, state)
         if self.sensor_noise:
             v = (after.obs[:2] - state.obs[:2]) / DT
@@ -92,7 +91,7 @@ class SprkSand:
         reward = -(60 * jnp.sum(e[:2] ** 2) + 5 * jnp.sum(e[2:] ** 2) + 0.1 * jnp.sum(a**2))
         metrics = {"tracking_error": jnp.linalg.norm(e[:2])}
         obs = jnp.concatenate([x, now, later])
-        return EnvState(ball, obs, reward, metrics=metrics, info={CLOCK: clock})
+        return EnvState(ball, obs, reward, metrics=metrics, info={"clock": clock})
 
     def _reference(self, clock: Array) -> Array:
         """Position and velocity [4], `clock` [] decisions after the reset."""
@@ -124,4 +123,4 @@ class SprkSand:
 
     def pose(self, state: EnvState) -> Array:
         """Positions of the ball and of the reference, qpos [4], for rendering."""
-        return jnp.concatenate([state.data.p, self._reference(state.info[CLOCK])[:2]])
+        return jnp.concatenate([state.data.p, self._reference(state.info["clock"])[:2]])

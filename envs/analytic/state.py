@@ -53,6 +53,10 @@ class Euclidean(ABC):
         """At x [o]; info: of the state before, {} at a reset."""
         return fully_observed(x, reward)
 
+    def pose(self, state: EnvState) -> Array:
+        """Joint positions qpos [nq] for rendering: the state, unless a world says otherwise."""
+        return state.data
+
     def to_local(self, x: Array) -> Array:
         """Local coordinates e [o] of the observation x [o]."""
         return x - self.equilibrium()[0]

@@ -44,32 +44,30 @@ class TwoLink:
     def reset(self, key: Array) -> EnvState:
         """At rest at q = 0, with a random target."""
         target = jax.random.uniform(key, (2,), jnp.float32, -self.reach, self.reach)
-        return self._state(jnp.zeros(4), target).replace(reward=jnp.float32(0.0))
+        at_rest = jnp.concatenate([jnp.zeros(4), target])
+        return self._state(at_rest).replace(reward=jnp.float32(0.0))
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state after one decision. action: [2] in [-1, 1]."""
-        return self._state(self._next(state.data, jnp.clip(action, -1, 1)), state.info["target"])
+        x = jnp.concatenate([state.data, state.info["target"]])
+        return self._state(self.dynamics(x, jnp.clip(action, -1, 1)))
 
-    def _state(self, x: Array, target: Array) -> EnvState:
-        """At x = (q1, q1', q2, q2') [4] with target [2]."""
-        obs = jnp.concatenate([x, target])
-        e = self.to_local(obs)
+    def _state(self, x: Array) -> EnvState:
+        """At the observation x [6]."""
+        e = self.to_local(x)
         distance = jnp.linalg.norm(e[::2])
         success = (distance < self.success_distance).astype(jnp.float32)
         metrics = {"distance": distance, "success": success}
         reward = -jnp.sum(jnp.array(WEIGHTS) * e**2)
-        return EnvState(x, obs, reward, metrics=metrics, info={"target": target})
+        return EnvState(x[:4], x, reward, metrics=metrics, info={"target": x[4:]})
 
     def dynamics(self, x: Array, u: Array) -> Array:
         """The next observation [6] after action u [2] at x [6], with the same target."""
-        return jnp.concatenate([self._next(x[:4], u), x[4:]])
-
-    def _next(self, x: Array, u: Array) -> Array:
-        """The next (q1, q1', q2, q2') [4] after action u [2] at x [4]."""
-        return rk4(lambda x: self._rate(x, TORQUE * u), x, DT / SUBSTEPS, SUBSTEPS)
+        after = rk4(lambda q: self._rate(q, TORQUE * u), x[:4], DT / SUBSTEPS, SUBSTEPS)
+        return jnp.concatenate([after, x[4:]])
 
     def _rate(self, x: Array, u: Array) -> Array:
-        """Time derivative [4] of x [4] under the torques u [2] [N m]."""
+        """Time derivative [4] of x = (q1, q1', q2, q2') [4] under the torques u [2] [N m]."""
         w1, w2 = x[1], x[3]
         coupling, i2 = 0.5 * M2 * LENGTH**2, M2 * LENGTH**2 / 3
         cos, sin = coupling * jnp.cos(x[2]), coupling * jnp.sin(x[2])

@@ -18,7 +18,7 @@ from jax import Array
 from hybrid_rl.envs.analytic.state import Euclidean, rk4
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.fields import Positive, part
-from hybrid_rl.types import EnvState, Spec
+from hybrid_rl.types import Spec
 
 DT = 0.01  # [s] of a decision
 FORCE = 20.0  # u at a = 1
@@ -45,10 +45,6 @@ class VanDerPol(Euclidean):
         return rk4(lambda x: _rate(x, FORCE * u[0]), x, DT)
 
     scene = mjcf.scene("van_der_pol.xml")
-
-    def pose(self, state: EnvState) -> Array:
-        """Position of the ball, qpos [2], for rendering."""
-        return state.data
 
 
 def _rate(x: Array, u: Array) -> Array:

@@ -7,16 +7,15 @@
 e, b, t: tip of the rod, block, target [m]. The action inverts the environment's velocity filter.
 """
 
-from dataclasses import dataclass
-
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.sawyer_push import SawyerPush
+from hybrid_rl.fields import part
 from hybrid_rl.types import Params, Spec
 
 
-@dataclass(frozen=True)
+@part
 class PushController:
     """Acts on the positions of `sawyer_push`; the fields are those of the environment."""
 

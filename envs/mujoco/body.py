@@ -9,7 +9,7 @@ Armature, damping and stiffness of the joints stay. By default nothing changes, 
 same one; other values are part of its name (`mjcf`), so they hold in MuJoCo C, MJX and Warp.
 """
 
-from abc import ABC, abstractmethod
+from abc import ABC
 from dataclasses import KW_ONLY
 from typing import ClassVar
 
@@ -31,17 +31,13 @@ class Body(ABC):
     friction: Positive = 1.0  # factor on every coefficient of sliding friction
     motors: tuple[Positive, ...] | Positive = 1.0  # factor on their strength: of all, or [m]
     payload: NotNegative = 0.0  # [kg] at the centre of mass of the root
-    _asset: ClassVar[str] = ""  # the model, whose first m actuators are the motors, for `_body`
+    spec: ClassVar[Spec]  # observation size, action size and decision interval
+    _asset: ClassVar[str]  # the model, whose first m actuators are the motors, for `_body`
 
     def __post_init__(self) -> None:
         size = self.spec.act
         if len(self._motors) != size:
             raise FieldError(self, "motors", f"must be 1 or {size} numbers, each above 0")
-
-    @property
-    @abstractmethod
-    def spec(self) -> Spec:
-        """Observation size, action size and decision interval."""
 
     def pose(self, state: EnvState) -> Array:
         """Joint positions qpos [nq] for rendering."""

@@ -15,7 +15,7 @@ Source: Wampler 1986; Nakamura and Hanafusa 1986 (damped least squares); Luh, Wa
 
 from dataclasses import dataclass
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -155,6 +155,18 @@ def damped_inverse(jacobian: Array, velocity: Array, damping: float, desired: Ar
 def rotate_towards(rotation: Array, target: Array, gain: float) -> Array:
     """Angular velocity [3], world frame, from `rotation` [4] towards `target` [4]; gain [1/s]."""
     return gain * rotation_vector(quat_multiply(target, inverse(rotation)))
+
+
+def joint_rates(
+    pose: tuple[Array, Array, Array], linear: Array, rotation: Array, away: Array, gains: Any
+) -> Array:
+    """Joint velocities [n] that move a site by `linear` [3] [m/s] and turn it to `rotation` [4].
+
+    pose: what `Chain.pose` gives. away: [n] [rad] from the joints to a posture, to which the null
+    space leads. gains: what has `hold` and `posture` [1/s] and `damping`, as a world of an arm.
+    """
+    twist = jnp.concatenate((linear, rotate_towards(pose[1], rotation, gains.hold)))
+    return damped_inverse(pose[2], twist, gains.damping, gains.posture * away)
 
 
 def stay_within(velocity: Array, position: Array, low: tuple, high: tuple) -> Array:

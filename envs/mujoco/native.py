@@ -140,10 +140,14 @@ def _advance(
 
 
 @cache
-def _call(
-    asset: str, threads: int, n: int, reads: Names, fields: Names
+def stepper(
+    asset: str, threads: int, n: int, reads: Names = (), fields: Names = ()
 ) -> Callable[[jax.Array], jax.Array]:
-    """The function x [D] -> y [D']: a foreign call on the CPU, a JAX callback on other devices."""
+    """The function x [D] -> y [D']: a foreign call on the CPU, a JAX callback on other devices.
+
+    reads: fields of MjData after mj_forward at the new state. fields: names of fields of MjModel.
+    n = 0 only evaluates `reads` and the sensors of positions and velocities.
+    """
     model = mjcf.load(asset)
     width = model.nq + 2 * model.nv + model.na + model.nsensordata
     width += sum(prod(mjcf.shape(asset, name)) for name in reads)
@@ -161,15 +165,3 @@ def _call(
     on_cpu = jax.ffi.ffi_call(name, out, vmap_method="broadcast_all")
     elsewhere = partial(jax.pure_callback, callback, out, vmap_method="broadcast_all")
     return lambda x: jax.lax.platform_dependent(x, cpu=on_cpu, default=elsewhere)
-
-
-def step(
-    asset: str, threads: int, n: int, x: jax.Array, reads: Names = (), fields: Names = ()
-) -> jax.Array:
-    """y = [qpos, qvel, act, warmstart, sensors, reads] after `n` steps from x.
-
-    x: [qpos, qvel, act, warmstart, ctrl, fields]. reads: fields of MjData after mj_forward at the
-    new state. fields: names of fields of MjModel. n = 0 only evaluates `reads` and the sensors of
-    positions and velocities.
-    """
-    return _call(asset, threads, n, reads, fields)(x)

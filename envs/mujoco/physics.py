@@ -154,13 +154,8 @@ class Physics:
     def _advance(self, state: PhysicsState, n: int) -> PhysicsState:
         given = (state.qpos, state.qvel, state.act, state.warmstart, state.ctrl)
         inputs = {name: x for name, x in zip(INPUTS, given, strict=True) if x is not None}
-        implementation = resolve(self.implementation)
-        if implementation == "native":
-            out = self._native(inputs, state.fields, n)
-        else:
-            impl = "jax" if implementation == "mjx" else "warp"
-            out = self._accelerated(inputs, state.fields, n, impl)
-        qpos, qvel, act, warmstart, sensors = out
+        step = self._native if resolve(self.implementation) == "native" else self._accelerated
+        qpos, qvel, act, warmstart, sensors = step(inputs, state.fields, n)
         return state.replace(
             qpos=qpos, qvel=qvel, act=_or_none(act), warmstart=warmstart, sensors=_or_none(sensors)
         )
@@ -168,14 +163,13 @@ class Physics:
     def _native(self, inputs: dict[str, Array], own: dict[str, Array], n: int) -> list[Array]:
         model, names = self.model, tuple(sorted(own))
         x = jnp.concatenate([*inputs.values(), *(own[name].ravel() for name in names)])
-        out = native.step(self.asset, self.threads, n, x, self.reads, names)
+        out = native.stepper(self.asset, self.threads, n, self.reads, names)(x)
         return jnp.split(out, np.cumsum((model.nq, model.nv, model.na, model.nv)))
 
-    def _accelerated(
-        self, inputs: dict[str, Array], own: dict[str, Array], n: int, impl: str
-    ) -> list[Array]:
+    def _accelerated(self, inputs: dict[str, Array], own: dict[str, Array], n: int) -> list[Array]:
         from hybrid_rl.envs.mujoco import mjx_warp
 
+        impl = "jax" if resolve(self.implementation) == "mjx" else "warp"
         if own and impl == "warp":
             line = "of the model, which an episode has for itself, are not for MuJoCo Warp"
             raise ValueError(f"fields {line}: use physics=mjx")

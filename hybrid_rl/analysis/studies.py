@@ -35,33 +35,25 @@ DPI, MOST_PIXELS = 200, 1600  # of a .png; across
 HOMES = ("hybrid_rl.analysis", "hybrid_rl.thesis.studies")  # of studies
 
 
-def studies() -> dict[str, str]:
-    """Name of every study -> first line of its docstring; no study is imported."""
-    lines = {}
-    for path in _sources().values():
-        module = ast.parse(path.read_text(encoding="utf-8"))
-        functions = {node.name for node in module.body if isinstance(node, ast.FunctionDef)}
-        if "figure" in functions:
-            lines[path.stem] = (ast.get_docstring(module) or "").partition("\n")[0]
-    return dict(sorted(lines.items()))
-
-
-def _sources() -> dict[str, Path]:
-    """Full name -> file of every module in HOMES."""
-    folders = {home: import_module(home).__path__ for home in HOMES}
-    return {
-        f"{home}.{path.stem}": path
-        for home, paths in folders.items()
-        for folder in paths
-        for path in Path(folder).glob("*.py")
-    }
+def studies() -> dict[str, tuple[str, str]]:
+    """Name of every study -> its module, first line of its docstring; no study is imported."""
+    found = {}
+    for home in HOMES:
+        for folder in import_module(home).__path__:
+            for file in Path(folder).glob("*.py"):
+                module = ast.parse(file.read_text(encoding="utf-8"))
+                functions = {node.name for node in module.body if isinstance(node, ast.FunctionDef)}
+                if "figure" in functions:
+                    line = (ast.get_docstring(module) or "").partition("\n")[0]
+                    found[file.stem] = f"{home}.{file.stem}", line
+    return dict(sorted(found.items()))
 
 
 def study_of(name: str) -> ModuleType:
     """The study of this name: one that is listed, or a module on Python's path."""
     known = studies()
     if name in known:
-        (module,) = (full for full in _sources() if full.rpartition(".")[2] == name)
+        module, _ = known[name]
         return import_module(module)
     try:
         study = import_module(name)
