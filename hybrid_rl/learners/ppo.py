@@ -41,6 +41,7 @@ class PPOState:
     seen: statistics.Running  # of the states, for the value function
     optimiser: Any
     rate: Array  # []
+    discount: Array  # [] of a decision
     decisions: Batch  # [T, E, ...]
     found: dict[str, Array]  # metrics of the last update; 0 before the first
 
@@ -65,6 +66,7 @@ class PPO:
     epochs: Count = 4
     minibatches: Count = 32
     discount: Discount = 0.97
+    discount_dt: Positive | None = 0.02  # [s] in which shorter decisions have it; None: each has it
     trace: Fraction = 0.95  # lambda
     clip: Inside = 0.3
     entropy: NotNegative = 0.01  # weight of the entropy
@@ -103,8 +105,9 @@ class PPO:
         decisions = Batch(obs, action, empty, empty, empty, obs)
         optimiser = self._optimiser.init((policy, value))
         rate = jnp.float32(self.learning_rate)
+        discount = returns.discount_of(self.discount, self.discount_dt, spec.dt)
         seen, found = statistics.init(spec.n), dict.fromkeys(METRICS, jnp.zeros(()))
-        return PPOState(policy, value, seen, optimiser, rate, decisions, found)
+        return PPOState(policy, value, seen, optimiser, rate, discount, decisions, found)
 
     def params(self, state: PPOState) -> dict[str, Any]:
         """The policy."""
@@ -134,8 +137,8 @@ class PPO:
         made = state.decisions
         values, after = (self._value(state, state.value, x) for x in (made.obs, made.next_obs))
         going = 1 - made.terminated
-        delta = made.reward / scale + self.discount * going * after - values
-        follows = self.discount * self.trace * going * (1 - made.truncated)
+        delta = made.reward / scale + state.discount * going * after - values
+        follows = state.discount * self.trace * going * (1 - made.truncated)
         sums = jax.vmap(returns.to_go, (1, 1, 0), 1)(delta, follows, jnp.zeros(self.num_envs))
         return sums[:-1], values
 
