@@ -141,7 +141,7 @@ def _advance(
 
 @cache
 def stepper(
-    asset: str, threads: int, n: int, reads: Names = (), fields: Names = ()
+    asset: str, threads: int, n: int, reads: Names, fields: Names
 ) -> Callable[[jax.Array], jax.Array]:
     """The function x [D] -> y [D']: a foreign call on the CPU, a JAX callback on other devices.
 

@@ -26,12 +26,12 @@ from hybrid_rl.types import Imagined, Params, Path, Return, Reward, Spec
 FALLS = 3.0  # the survival bonus of a decision, where episodes end by a fall
 
 
-def discount_of(discount: Array | float, of: Array | float | None, dt: float) -> Array:
+def discount_of(discount: Array | float, time: Array | float | None, dt: float) -> Array:
     """The discount [] of a decision of dt [s].
 
-    of: [s] a time in which shorter decisions have `discount` together; None: each has it.
+    It is `discount`; if the decision is shorter than `time` [s], `discount` is that of `time`.
     """
-    return jnp.float32(discount if of is None else discount ** jnp.minimum(1.0, dt / of))
+    return jnp.float32(discount if time is None else discount ** jnp.minimum(1.0, dt / time))
 
 
 def to_go(rewards: Array, goes_on: Array, last: Array, unroll: bool = False) -> Array:

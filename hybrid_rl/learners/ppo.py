@@ -66,7 +66,7 @@ class PPO:
     epochs: Count = 4
     minibatches: Count = 32
     discount: Discount = 0.97
-    discount_dt: Positive | None = 0.02  # [s] in which shorter decisions have it; None: each has it
+    discount_dt: Positive | None = 0.02  # [s] its time, if decisions are shorter; None: a decision
     trace: Fraction = 0.95  # lambda
     clip: Inside = 0.3
     entropy: NotNegative = 0.01  # weight of the entropy

@@ -33,7 +33,7 @@ class ReturnScale:
     """The running scale of discounted returns."""
 
     discount: Discount = 0.99
-    discount_dt: Positive | None = None  # [s] in which shorter decisions have it; None: each has it
+    discount_dt: Positive | None = None  # [s] its time, if decisions are shorter; None: a decision
     bound: Positive = 5.0  # of scaled returns
     num_envs: Count = 1
 
