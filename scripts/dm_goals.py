@@ -1,7 +1,8 @@
 """dm_control's cheetah, walker and hopper, and TD-MPC2's new tasks for them as goals.
 
-    echo "_target_: scripts.dm_goals.CheetahBackwards" > my_conf/reward/backwards.yaml
-    python -m hybrid_rl.train task=gymnasium env.make=scripts.dm_goals:cheetah episode.steps=500 \
+    export PYTHONPATH=scripts
+    echo "_target_: dm_goals.CheetahBackwards" > my_conf/reward/backwards.yaml
+    python -m hybrid_rl.train task=gymnasium env.make=dm_goals:cheetah episode.steps=500 \
         episode.action_repeat=2 random_steps=1000
     python -m hybrid_rl.evaluate run=DIR config_dir=my_conf reward=backwards
     python -m hybrid_rl.train run=DIR config_dir=my_conf reward=backwards total_steps=10000
