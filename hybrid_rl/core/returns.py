@@ -26,14 +26,6 @@ from hybrid_rl.types import Imagined, Params, Path, Return, Reward, Spec
 FALLS = 3.0  # the survival bonus of a decision, where episodes end by a fall
 
 
-def discount_of(discount: Array | float, time: Array | float | None, dt: float) -> Array:
-    """The discount [] of a decision of dt [s].
-
-    It is `discount`; if the decision is shorter than `time` [s], `discount` is that of `time`.
-    """
-    return jnp.float32(discount if time is None else discount ** jnp.minimum(1.0, dt / time))
-
-
 def to_go(rewards: Array, goes_on: Array, last: Array, unroll: bool = False) -> Array:
     """S [T+1] for rewards [T], discounts c = goes_on [T] and the value `last` [] at the end."""
 

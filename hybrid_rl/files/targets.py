@@ -36,6 +36,7 @@ OF_PYTHON = [
 CHECKOUT = ("envs", "hydra_plugins", "scripts", "tests", "thesis")  # modules beside PACKAGE
 NONE = "is no part of hybrid_rl"
 OTHER = f"{NONE}; put its folder on PYTHONPATH if it is yours"
+INSTALLED = f"{NONE}; of an installed package name a subclass in a module of yours"
 TARGET, OURS = "_target_", "hybrid_rl."
 NAMED = re.compile(r"([^\W\d][\w.]*):([^\W\d][\w./-]*)")  # MODULE:NAME, MODULE:ID
 ANYWHERE = re.compile(rf"(?<![\w.])(?={NAMED.pattern})")  # in a text
@@ -192,7 +193,7 @@ def theirs(names: list[str], near: Path | None) -> Path:
     tops = _tops(names[0])
     ours = PACKAGE.parent if names[0] in CHECKOUT else None
     if not tops or any(top.parent == ours or not _of_user(top.parent) for top in tops):
-        raise ValueError(OTHER)
+        raise ValueError(INSTALLED if tops and ours is None else OTHER)
     if near is not None:
         file, real = near.resolve(), [top.parent.resolve() / top.name for top in tops]
         if any(top == file or top in file.parents or file in top.parents for top in real):

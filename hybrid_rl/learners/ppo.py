@@ -9,8 +9,7 @@ Every `unroll` decisions of each world the policy learns from these alone: `epoc
 `minibatches` parts. Until then it does not change, so pi_old follows from its parameters. A time
 limit is bootstrapped through. Rewards are divided by `params.scale` where it is learned
 (learners.return_scale). With `target_kl` the learning rate follows the change of the policy, as in
-RSL-RL (Rudin et al. 2022). The defaults lie among those that Brax and MuJoCo Playground give their
-locomotion tasks.
+RSL-RL (Rudin et al. 2022). Defaults lie among those of Brax' and Playground's locomotion tasks.
 """
 
 from functools import partial
@@ -41,7 +40,6 @@ class PPOState:
     seen: statistics.Running  # of the states, for the value function
     optimiser: Any
     rate: Array  # []
-    discount: Array  # [] of a decision
     decisions: Batch  # [T, E, ...]
     found: dict[str, Array]  # metrics of the last update; 0 before the first
 
@@ -65,8 +63,7 @@ class PPO:
     unroll: Count = 20  # decisions of each world between two updates
     epochs: Count = 4
     minibatches: Count = 32
-    discount: Discount = 0.97
-    discount_dt: Positive | None = 0.02  # [s] its time, if decisions are shorter; None: a decision
+    discount: Discount = 0.99
     trace: Fraction = 0.95  # lambda
     clip: Inside = 0.3
     entropy: NotNegative = 0.01  # weight of the entropy
@@ -105,9 +102,8 @@ class PPO:
         decisions = Batch(obs, action, empty, empty, empty, obs)
         optimiser = self._optimiser.init((policy, value))
         rate = jnp.float32(self.learning_rate)
-        discount = returns.discount_of(self.discount, self.discount_dt, spec.dt)
         seen, found = statistics.init(spec.n), dict.fromkeys(METRICS, jnp.zeros(()))
-        return PPOState(policy, value, seen, optimiser, rate, discount, decisions, found)
+        return PPOState(policy, value, seen, optimiser, rate, decisions, found)
 
     def params(self, state: PPOState) -> dict[str, Any]:
         """The policy."""
@@ -137,8 +133,8 @@ class PPO:
         made = state.decisions
         values, after = (self._value(state, state.value, x) for x in (made.obs, made.next_obs))
         going = 1 - made.terminated
-        delta = made.reward / scale + state.discount * going * after - values
-        follows = state.discount * self.trace * going * (1 - made.truncated)
+        delta = made.reward / scale + self.discount * going * after - values
+        follows = self.discount * self.trace * going * (1 - made.truncated)
         sums = jax.vmap(returns.to_go, (1, 1, 0), 1)(delta, follows, jnp.zeros(self.num_envs))
         return sums[:-1], values
 

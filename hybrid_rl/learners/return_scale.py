@@ -13,7 +13,7 @@ import jax.numpy as jnp
 from flax import struct
 from jax import Array
 
-from hybrid_rl.core import returns, statistics
+from hybrid_rl.core import statistics
 from hybrid_rl.fields import Count, Discount, Positive, part
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -22,7 +22,6 @@ from hybrid_rl.types import Batch, Params, Spec
 class ScaleState:
     """What the decisions so far tell about returns."""
 
-    discount: Array  # [] gamma of a decision
     so_far: Array  # [E] gamma G of the running episodes
     stats: statistics.Running  # of all G, size 1
     largest: Array  # [] |G|
@@ -33,7 +32,6 @@ class ReturnScale:
     """The running scale of discounted returns."""
 
     discount: Discount = 0.99
-    discount_dt: Positive | None = None  # [s] its time, if decisions are shorter; None: a decision
     bound: Positive = 5.0  # of scaled returns
     num_envs: Count = 1
 
@@ -43,8 +41,7 @@ class ReturnScale:
 
     def init(self, key: Array, spec: Spec) -> ScaleState:
         """No rewards yet. The key is not used."""
-        discount = returns.discount_of(self.discount, self.discount_dt, spec.dt)
-        return ScaleState(discount, jnp.zeros(self.num_envs), statistics.init(1), jnp.zeros(()))
+        return ScaleState(jnp.zeros(self.num_envs), statistics.init(1), jnp.zeros(()))
 
     def params(self, state: ScaleState) -> dict[str, Any]:
         """The scale []."""
@@ -58,8 +55,7 @@ class ReturnScale:
         now = batch.reward + state.so_far
         ended = jnp.maximum(batch.terminated, batch.truncated)
         state = ScaleState(
-            state.discount,
-            state.discount * (1 - ended) * now,
+            self.discount * (1 - ended) * now,
             statistics.update(state.stats, now[:, None], rate=0.0),
             jnp.maximum(state.largest, jnp.abs(now).max()),
         )

@@ -6,8 +6,6 @@ One trunk with two heads, or two networks (thesis appendix B: a sine layer for t
 rectified layer for the standard deviation) if `log_std_activation` is set. With `normalise` their
 inputs are states divided by their running standard deviation in the learner's data: the
 demonstrations for behaviour cloning, the batches for SAC and DDPG.
-
-`StartedGaussian` is one whose parameters begin as those of a trained policy in a file.
 """
 
 from collections.abc import Mapping
@@ -20,7 +18,7 @@ from jax import Array
 from hybrid_rl.core import statistics
 from hybrid_rl.core.squashing import Squashed
 from hybrid_rl.data import archive
-from hybrid_rl.fields import part
+from hybrid_rl.fields import Positive, part
 from hybrid_rl.networks import MLP, Activation, Perceptron, Widths, apply, outputs, perceptron
 from hybrid_rl.protocols import Env
 from hybrid_rl.types import Spec
@@ -35,6 +33,7 @@ class TanhGaussian(Squashed):
     log_std_activation: Activation | None = None  # None: one trunk for mean and log_std
     log_std_min: float = -5.0
     log_std_max: float = 2.0
+    std: Positive = 1.0  # sigma at first, about
     normalise: bool = False
 
     def _net(self, out: int, activation: str | None = None) -> MLP:
@@ -67,6 +66,7 @@ class TanhGaussian(Squashed):
             m = outputs(params["mean"])
             mu = apply(self._net(m), params["mean"], x)
             log_std = apply(self._net(m, self.log_std_activation), params["log_std"], x)
+        log_std = log_std + jnp.log(self.std)
         return mu, jnp.exp(jnp.clip(log_std, self.log_std_min, self.log_std_max))
 
     def perceptron(self, params: dict[str, Any], spec: Spec) -> Perceptron:

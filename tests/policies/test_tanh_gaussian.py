@@ -35,6 +35,11 @@ def test_samples_are_squashed_normal_and_have_its_density(policy: TanhGaussian) 
     assert (np.abs(policy.mean(params, x)) < 1).all()
 
 
+def test_its_deviation_begins_as_chosen() -> None:
+    policy = TanhGaussian(hidden=(16,), std=0.3)
+    np.testing.assert_allclose(policy.gaussian(begun(policy, SPEC), jnp.zeros(3))[1], 0.3)
+
+
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_an_action_at_its_bound_has_the_probability_to_be_there(side: float) -> None:
     """float32 does not know its z, so its density would change by orders of magnitude with mu."""
@@ -49,10 +54,8 @@ def test_a_normalised_policy_does_not_depend_on_units() -> None:
     policy = TanhGaussian(hidden=(16,), normalise=True)
     x = jax.random.normal(jax.random.key(1), (50, SPEC.obs))
     scale, shift = jnp.array([1e-2, 1.0, 30.0]), jnp.array([5.0, 0.0, -3.0])
-    first = begun(policy, SPEC)
-    other = jnp.broadcast_to(scale, x.shape) * x + jnp.broadcast_to(shift, x.shape)
-    plain = policy.observe(first, x)
-    moved = policy.observe(first, other)
+    first, other = begun(policy, SPEC), scale[None] * x + shift[None]
+    plain, moved = (policy.observe(first, at) for at in (x, other))
     np.testing.assert_allclose(policy.mean(moved, other), policy.mean(plain, x), atol=1e-4)
     assert not np.allclose(policy.mean(first, x), policy.mean(plain, x), atol=1e-2)
 
@@ -62,7 +65,6 @@ def test_the_variance_is_that_to_first_order(mu, sigma, ratio, monkeypatch) -> N
     """Over the true one, by Gauss-Hermite quadrature with 200 points."""
     z, weights = np.polynomial.hermite_e.hermegauss(200)
     monkeypatch.setattr(TanhGaussian, "gaussian", lambda *_: (jnp.float32(mu), jnp.float32(sigma)))
-    u = np.tanh(mu + sigma * z)
-    true = np.average(u**2, weights=weights) - np.average(u, weights=weights) ** 2
+    true = np.cov(np.tanh(mu + sigma * z), aweights=weights, bias=True)
     got = float(TanhGaussian().variance({}, jnp.zeros(1)))
     assert got / true == pytest.approx(ratio, abs=0.006)
