@@ -9,8 +9,7 @@ is judged before anything is imported. A name leads to
     folder on PYTHONPATH or in the current one, not among installed packages; and not in the run
     that names it. MODULE:ID may also be of an installed package that depends on Gymnasium.
 
-MODULE:NAME that the user types, or gives from Python, may be any. `imported` alone follows one; the
-user's modules and what they define are found without importing anything.
+MODULE:NAME that the user types, or gives from Python, may be any. `imported` alone imports one.
 """
 
 import ast
