@@ -35,7 +35,7 @@ OF_PYTHON = [
 CHECKOUT = ("envs", "hydra_plugins", "scripts", "tests", "thesis")  # modules beside PACKAGE
 NONE = "is no part of hybrid_rl"
 OTHER = f"{NONE}; put its folder on PYTHONPATH if it is yours"
-INSTALLED = f"{NONE}; of an installed package name a subclass in a module of yours"
+INSTALLED = f"{NONE}; to use an installed class, subclass it in a module of yours"
 TARGET, OURS = "_target_", "hybrid_rl."
 NAMED = re.compile(r"([^\W\d][\w.]*):([^\W\d][\w./-]*)")  # MODULE:NAME, MODULE:ID
 ANYWHERE = re.compile(rf"(?<![\w.])(?={NAMED.pattern})")  # in a text

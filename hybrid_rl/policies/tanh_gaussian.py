@@ -33,7 +33,7 @@ class TanhGaussian(Squashed):
     log_std_activation: Activation | None = None  # None: one trunk for mean and log_std
     log_std_min: float = -5.0
     log_std_max: float = 2.0
-    std: Positive = 1.0  # sigma at first, about
+    std: Positive = 1.0  # a factor of sigma: about its first value
     normalise: bool = False
 
     def _net(self, out: int, activation: str | None = None) -> MLP:
