@@ -63,7 +63,6 @@ def main() -> None:
     given, changes = read(__doc__, ARGUMENTS, ROBOT_CHANGES, SHOWN)
     named = robot(given, changes)
     from hybrid_rl.analysis import drawing  # imports JAX, for seconds
-    from hybrid_rl.envs.adapters.external import External
     from hybrid_rl.envs.mujoco import offscreen
     from hybrid_rl.run.recording import scripted_expert
     from hybrid_rl.run.retarget import load_changed
@@ -82,10 +81,6 @@ def main() -> None:
         controller, params = trained.learner(seed, given["mode"], world=True)
         seed, by = trained.seeds[0] if seed is None else seed, f"step {trained.step:,}"
     key = evaluation_keys(seed, number + 1)[-1]
-    if isinstance(world.env, External):
-        pictures, total = drawing.draw_outside(world, controller, params, key, steps, out)
-        print(f"{out}: {pictures} pictures, return {total:,.1f}, {by}")
-        return
     say("compiling an episode ...")  # of a planner, a minute
     begun = replace(world, steps=drawing.length(world, steps, out))
     _draw(world, drawing.film(begun, controller, params, key), given, out, by)

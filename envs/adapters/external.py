@@ -180,7 +180,8 @@ class Copies:
             by_goal, violated = jax.device_get(self._judge(*given))
             paid = paid if by_goal is None else by_goal
         if not np.isfinite(paid).all():
-            raise WorldError(f"{self.env.name}: step: gives a reward that is not finite")
+            payer = f"{self.env.name}: step" if self.goal is None else type(self.goal).__name__
+            raise WorldError(f"{payer}: gives a reward that is not finite")
         flags = [np.asarray(infos[name]) for name in FLAGS if name in infos]
         self.success = flags[0].astype(bool).reshape(len(paid), -1).any(1) if flags else None
         self._obs = obs

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import jax
 import numpy as np
 
+from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.envs.mujoco.offscreen import Canvas
 from hybrid_rl.envs.mujoco.scenery import check_drawable, pose_of, scene_of
@@ -117,7 +118,7 @@ def _write_png(out: Path, pictures: Iterable[np.ndarray], fps: float) -> None:
 class Film(NamedTuple):
     """One episode, to be drawn."""
 
-    poses: np.ndarray  # [frames, nq]
+    poses: np.ndarray  # [frames, nq]; of a Gymnasium environment pictures, which it drew itself
     total: float  # undiscounted return
     success: bool | None  # at the end; None: the task has no measure of it
 
@@ -136,6 +137,8 @@ def episode(trained: Any, mode: str = "full", seed: int | None = None, steps: in
 
 def film(world: Any, controller: Any, params: Any, key: Any) -> Film:
     """One episode of `world` under `controller` with `params`; UsageError if it has no scene."""
+    if isinstance(world.env, External):
+        return _outside(world, controller, params, key)
     check_drawable(world.env)
 
     def go(params: Any, key: Any) -> tuple:
@@ -151,6 +154,9 @@ def film(world: Any, controller: Any, params: Any, key: Any) -> Film:
 
 def draw_film(world: Any, shown: Film, out: Path, width: int = 640, height: int = 480) -> None:
     """Write an episode of `world` to a file of one of SUFFIXES, in real time."""
+    if isinstance(world.env, External):
+        write(out, len(shown.poses), 1 / world.spec.dt, lambda at, smooth: shown.poses[[*at]])
+        return
     stride = _stride(world)
     rate = 1 / (world.spec.dt * stride)
     draw(scene_of(world.env), shown.poses[::stride], out, rate, width, height)
@@ -163,27 +169,24 @@ def _stride(world: Any) -> int:
 
 def length(world: Any, asked: int, out: Path) -> int:
     """Decisions of `world` at most; asked: by the user, 0 for the default."""
-    if asked or out.suffix == ".png" or not offscreen.by_processor():
+    drawn = isinstance(world.env, External) or not offscreen.by_processor()  # fast enough
+    if asked or out.suffix == ".png" or drawn:
         return asked or world.steps
     return min(world.steps, FIRST * _stride(world))
 
 
-def draw_outside(
-    world: Any, controller: Any, params: Any, key: Any, steps: int, out: Path
-) -> tuple[int, float]:
-    """Draw an episode of a Gymnasium environment, `steps` decisions at most; (pictures, return)."""
+def _outside(world: Any, controller: Any, params: Any, key: Any) -> Film:
+    """An episode of a Gymnasium environment, without a picture of its end."""
     policy = TrainedPolicy(world.spec, controller, params)
     seeds = [seed_of(*map(int, jax.random.key_data(key)))]
     offscreen.lend()
     copies = copies_of(world, seeds, "rgb_array")
-    obs, total, pictures = copies.reset()[0], 0.0, [copies.picture()]
-    for _ in range(steps or world.steps):
+    obs, total, pictures, done = copies.reset()[0], 0.0, [copies.picture()], False
+    while not done:
         got = copies.step(policy(obs)[None])
         obs, total = np.asarray(got.following[0]), total + float(got.reward[0])
-        if got.terminated[0] or got.truncated[0]:
-            break
-        pictures.append(copies.picture())
+        done = bool(got.terminated[0] or got.truncated[0])
+        pictures.append(pictures[-1] if done else copies.picture())
+    success = None if copies.success is None else bool(copies.success[0])
     copies.close()
-    fps = 1 / world.spec.dt
-    write(out, len(pictures), fps, lambda shown, smooth: [pictures[i] for i in shown])
-    return len(pictures), total
+    return Film(np.array(pictures), total, success)

@@ -25,6 +25,7 @@ from jax import Array
 
 from hybrid_rl.core.batching import where
 from hybrid_rl.envs.adapters.external import Copies, External, Outcome
+from hybrid_rl.errors import WorldError
 from hybrid_rl.outside.acting import NONE, Acting, next_state
 from hybrid_rl.outside.sending import Mailbox, send
 from hybrid_rl.protocols import Controller
@@ -148,9 +149,12 @@ class HostProgram:
         self.copies: Copies | None = None  # made at the first call
 
     def __call__(self, state: AgentState, start: Array, rounds: Array) -> tuple[AgentState, Any]:
-        """Train for some rounds, as the program of `Loop`."""
+        """Train for some rounds, as the program of `Loop`.
+
+        If the environment fails after the first decision, it ends early; the loop has the `fault`.
+        """
         loop, envs, first, made = self.loop, self.loop.agent.num_envs, int(start), False
-        each = len(loop.seeds), envs
+        each, count = (len(loop.seeds), envs), int(rounds) * (loop.fault is None)
         if self.copies is None:
             seeds = [seed_of(seed, i) for seed in loop.seeds for i in range(envs)]
             self.copies = copies_of(loop.agent.episode, seeds)
@@ -159,16 +163,24 @@ class HostProgram:
         got = jax.tree.map(np.array, outcome_like(state.env))  # the state itself is donated
         u = np.zeros((*each, loop.agent.spec.act), np.float32)
         with Mailbox(loop.mesh.size) as sent:
-            for i in range(int(rounds)):
+            for i in range(count):
                 at = np.array([i, first + i * envs, made, sent.ticket], np.int32)
                 state, rows = self.act(state, rows, u, got, at)
                 u = sent.next(state.memory.count)
                 u = np.nan_to_num(u)  # a learner that has diverged must not end the others
-                got = Outcome(*(x.reshape(*each, *x.shape[1:]) for x in self.copies.step(u)))
-                u, made = u.reshape(*each, -1), loop.early and i + 1 < int(rounds)
+                try:
+                    stepped = self.copies.step(u)
+                except WorldError as fault:
+                    if not first + i:
+                        raise
+                    loop.fault, count = fault, i
+                    state = state.replace(memory=state.memory.replace(count=state.memory.count - 1))
+                    break
+                got = Outcome(*(x.reshape(*each, *x.shape[1:]) for x in stepped))
+                u, made = u.reshape(*each, -1), loop.early and i + 1 < count
                 if not made:
                     state, rows = self.close(state, rows, u, got, at)
-        return state, jax.device_get(rows)
+        return state, {name: row[:count] for name, row in jax.device_get(rows).items()}
 
 
 def outcome_like(env: EnvState) -> Outcome:

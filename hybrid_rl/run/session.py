@@ -15,7 +15,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from hybrid_rl.errors import DivergenceError
+from hybrid_rl.errors import DivergenceError, WorldError
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run.checkpoints.store import End, Record, Shelf
 from hybrid_rl.run.evaluations import EVALUATED, Evaluations
@@ -144,7 +144,7 @@ class Session:
             self.state, metrics = self.program(self.state, jnp.int32(start), jnp.int32(rounds))
         metrics = {name: np.asarray(m)[:rounds] for name, m in metrics.items()}
         took, rounds = perf_counter() - began, len(metrics["episode/done"])
-        if not rounds:  # a robot gave none before a signal
+        if not rounds:  # a robot gave none before a signal, or the world failed
             self.stop = self.stop or 0
             return
         self.record.step += rounds * worlds
@@ -187,7 +187,10 @@ class Session:
         """The outcomes of every evaluated mode, unless a signal comes."""
         with self.progress.doing("evaluating"):
             params = self.loop.params(self.state)
-            outcomes = self.evaluations(params, lambda: self.stop is not None)
+            try:
+                outcomes = self.evaluations(params, lambda: self.stop is not None)
+            except WorldError as fault:
+                self.loop.fault, self.stop, outcomes = fault, self.stop or 0, None
         if outcomes is None:
             return
         self.record.unevaluated = False
@@ -300,7 +303,7 @@ def failure_line(ends: Sequence[End], left: int, checkpoint: int | None) -> str:
         return f"{words}; the others went on to the end"
     if checkpoint is None:
         return f"{words}; there is no checkpoint"
-    mend = "fix what fails and resume it, or begin again with a lower learning rate"
+    mend = "fix a reward that is not finite and resume it, or begin again with a lower learning rate"
     return f"{words}; checkpoint {checkpoint} is intact: {mend}"
 
 

@@ -15,10 +15,12 @@ from gymnasium.spaces import Dict, Discrete
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 from hosted import Count, counting
 
+import hybrid_rl
 from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.data.replay import unpack
 from hybrid_rl.envs.adapters.external import Copies, External
 from hybrid_rl.envs.adapters.gymnasium import GymnasiumEnv
+from hybrid_rl.errors import WorldError
 from hybrid_rl.outside.host_loop import HostEvaluator, HostLoop, seed_of
 from hybrid_rl.run import exported
 from hybrid_rl.run.members import loop_of
@@ -141,6 +143,34 @@ def test_a_resumed_run_marks_where_its_episode_was_cut():
     assert (state.memory.count == count + 1).all()
     assert rows.truncated.tolist() == [0, 0, 1, 0]
     assert rows.obs[3].tolist() == [1, 0]  # a new copy of the environment, at its first step
+
+
+class Fragile(Count):
+    """Fails at one of the steps of all copies, once."""
+
+    left = 0  # steps until then
+
+    def step(self, action: np.ndarray) -> tuple:
+        Fragile.left -= 1
+        if not Fragile.left:
+            raise ValueError("motor off")
+        return super().step(action)
+
+
+@pytest.mark.parametrize(
+    ("algo", "left", "saved"),
+    [("sac", 8, 7), ("sac", 24, 20), ("ppo num_envs=2 policy_learner.minibatches=1", 8, 6)],
+    ids=["in training", "in an evaluation", "where each decision is learned from at once"],
+)
+def test_a_run_is_saved_where_its_environment_fails(tmp_path, algo, left, saved):
+    assert External(make="test_host_loop:Fragile").known  # the check is made once
+    Fragile.left, folder = left, tmp_path / "run"
+    world = ["task=gymnasium", "env.make=test_host_loop:Fragile", "episode.steps=5"]
+    words = [*world, *(f"algo={algo}").split(), "eval_every=20", "total_steps=40", "random_steps=4"]
+    with pytest.raises(WorldError, match="motor off"):
+        hybrid_rl.train([*words, "checkpoint_every=40", f"run_dir={folder}"], progress=False)
+    assert [each.name for each in (folder / "checkpoints").iterdir()] == [str(saved)]
+    assert hybrid_rl.train([f"resume={folder}"], progress=False)["finished"]
 
 
 def test_copies_step_as_in_gymnasiums_vector():

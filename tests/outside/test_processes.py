@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 import hybrid_rl
-from hybrid_rl import render
+from hybrid_rl import RunFolder, render
 from hybrid_rl.envs.adapters.external import Copies, External
 from hybrid_rl.errors import WorldError
+from hybrid_rl.tools.report import __main__ as report
 
 SLEEPER = '''
 import os
@@ -103,7 +104,9 @@ def test_a_gymnasium_environment_draws_itself(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(sys, "argv", ["render", f"run={tmp_path}/run", f"out={out}"])
     monkeypatch.setenv("MUJOCO_GL", "disable")  # as every command begins
     render.main()
-    assert "6 pictures, return 6.0" in capsys.readouterr().out
-    pictures = iio.imread(out)
-    assert pictures.shape[:3] == (6, 20, 32)
+    assert "6 decisions, return 6.0" in capsys.readouterr().out
+    page = report.page([RunFolder(tmp_path / "run")])
+    assert "the first 6 of 6 decisions of an episode, return so far 6.0" in page
+    pictures = iio.imread(out)[:6]
+    assert pictures.shape[1:3] == (20, 32)
     assert np.all(np.diff(pictures.astype(int).mean((1, 2, 3))) > 0)

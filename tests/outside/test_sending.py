@@ -95,9 +95,15 @@ def test_a_run_does_not_depend_on_where_its_calls_end(monkeypatch):
     assert np.isfinite(whole[0].memory.rows).all()
 
 
-def test_an_error_in_the_environment_ends_the_call():
+def test_an_error_in_the_environment_ends_the_call(monkeypatch):
+    """The decision whose outcome is unknown is in neither memory nor metrics."""
+    loop = compiled("sac", True, False)[0]
+    monkeypatch.setattr(loop, "fault", None)
+    state, metrics = run("sac", fail="error", calls=(ROUNDS, 1))
     with pytest.raises(WorldError, match="ValueError: motor off"):
-        run("sac", fail="error")
+        raise loop.fault
+    assert state.memory.count.tolist() == [1, 1]
+    assert len(metrics["episode/done"]) == 1
     assert not sending._boxes
 
 
