@@ -19,9 +19,11 @@ from typing import Any
 import gymnasium
 import jax.numpy as jnp
 import numpy as np
-from dm_control import suite
+from dm_control import suite  # pyright: ignore[reportMissingImports]
 from jax import Array
-from shimmy.dm_control_compatibility import DmControlCompatibilityV0
+from shimmy.dm_control_compatibility import (  # pyright: ignore[reportMissingImports]
+    DmControlCompatibilityV0,
+)
 
 from hybrid_rl import part
 

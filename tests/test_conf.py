@@ -125,6 +125,14 @@ def test_random_decisions_leave_half_of_a_short_run_to_learning(given, random) -
     assert config.load(["task=halfcheetah", *given]).random_steps == random
 
 
+@pytest.mark.parametrize(
+    ("given", "every"),
+    [(["total_steps=3001"], 301), (["total_steps=3001", "eval_every=3000"], 3000), ([], 5000)],
+)
+def test_a_short_run_has_ten_evaluations(given, every) -> None:
+    assert config.load(["task=halfcheetah", *given]).eval_every == every
+
+
 def test_how_a_hybrid_method_learns_is_one_override() -> None:
     for algo in ("hybrid_stochastic", "hybrid_disagreement"):
         c = config.load(["learning=mbpo", f"algo={algo}"])

@@ -73,14 +73,14 @@ def train(conf, folder, *overrides):
 
 def test_a_method_is_one_yaml_and_a_recursive_learner_one_file(conf, tmp_path, capfd):
     """The method composes as printed, also from Python; with the learner added, it trains."""
-    method = conf / "algo" / "single_model.yaml"
+    method = conf / "algo" / "planned_sac.yaml"
     method.write_text(blocks("A method")[0])
-    composed = config.load(["algo=single_model"], config_dir=conf)
+    composed = config.load(["algo=planned_sac"], config_dir=conf)
     assert list(composed.learners) == ["model", "policy"]
     (tmp_path / "reward_average.py").write_text(blocks("A recursive learner")[0])
     entry = re.search(r"`(average: \{.*?\})`", section("A recursive learner"))[1]
     method.write_text(f"{method.read_text()}  {entry}\n")
-    written = train(conf, tmp_path / "run", "algo=single_model")
+    written = train(conf, tmp_path / "run", "algo=planned_sac")
     assert capfd.readouterr().err == ""
     assert list(written.learners) == ["model", "policy", "average"]
     trained = load(tmp_path / "run")

@@ -77,6 +77,13 @@ class External(Made):
         return self.known.spec
 
     @property
+    def quantities(self) -> Callable[[Array], dict[str, Array]]:
+        """The function of that name of its class, if it has one; goals and constraints need it."""
+        if self.known.quantities is None:
+            raise AttributeError("quantities")
+        return self.known.quantities
+
+    @property
     def apart(self) -> bool:
         """Whether each copy has a process of its own."""
         return self.processes or self.timeout_s is not None
@@ -277,6 +284,7 @@ class Known(NamedTuple):
     steps: int | None  # the time limit [steps of the environment]
     space: Box  # of actions
     seen: Space  # of observations, as the environment returns them
+    quantities: Callable[[Array], dict[str, Array]] | None  # of an observation, flat, in JAX
 
 
 @cache
@@ -300,7 +308,8 @@ def _known(env: External) -> Known:
     elif one.has_wrapper_attr("_max_episode_steps"):
         limit = one.get_wrapper_attr("_max_episode_steps")  # of a TimeLimit
     one.close()
-    return Known(Spec(flatdim(obs), flatdim(space), dt), limit, space, seen)
+    measured = getattr(one.unwrapped, "quantities", None)
+    return Known(Spec(flatdim(obs), flatdim(space), dt), limit, space, seen, measured)
 
 
 def _fault(one: gymnasium.Env) -> str:

@@ -62,7 +62,7 @@ class PPO:
     num_envs: Count = 1
     unroll: Count = 20  # decisions of each world between two updates
     epochs: Count = 4
-    minibatches: Count = 32
+    minibatches: Count = 32  # of equal size; what is left over waits for another pass
     discount: Discount = 0.99
     trace: Fraction = 0.95  # lambda
     clip: Inside = 0.3
@@ -76,13 +76,6 @@ class PPO:
     data: ClassVar[str] = "latest"
     owns: ClassVar[tuple[str, ...]] = ("policy",)
     every: ClassVar[int] = 1
-
-    def __post_init__(self) -> None:
-        if (self.unroll * self.num_envs) % self.minibatches:
-            raise ValueError(
-                f"policy_learner.minibatches={self.minibatches}: must divide unroll * num_envs, "
-                f"{self.unroll} * {self.num_envs}"
-            )
 
     @property
     def _net(self) -> MLP:
@@ -155,8 +148,10 @@ class PPO:
 
         def epoch(state: PPOState, key: Array) -> tuple[PPOState, dict[str, Array]]:
             mixing, drawing = jax.random.split(key)
-            order = jax.random.permutation(mixing, len(x)).reshape(self.minibatches, -1)
-            return jax.lax.scan(one, state, (order, jax.random.split(drawing, self.minibatches)))
+            parts = min(self.minibatches, len(x))
+            order = jax.random.permutation(mixing, len(x))[: len(x) // parts * parts]
+            given = order.reshape(parts, -1), jax.random.split(drawing, parts)
+            return jax.lax.scan(one, state, given)
 
         state, found = jax.lax.scan(epoch, state, jax.random.split(key, self.epochs))
         return state.replace(found=jax.tree.map(jnp.mean, found))

@@ -40,7 +40,8 @@ from hybrid_rl.training.loop import Axis, Loop
 from hybrid_rl.version import BEGAN
 
 FREE = ("resume", "total_steps", "compile_cache", "precision")  # keys of a resumed run
-MAY_DIFFER = (*FREE, "run_dir", "logger", "random_steps")  # the last may follow from total_steps
+MAY_DIFFER = {*FREE, "run_dir", "logger"}
+FOLLOW = {"random_steps", "eval_every"}  # perhaps from total_steps
 ONLY = "with resume only total_steps and precision can be changed"
 
 Handler = Callable[[Callable[[int], None]], AbstractContextManager]
@@ -281,7 +282,7 @@ def _settings(config: DictConfig, run_dir: Path, given: Mapping[str, str]) -> Di
     """
     old = folder.read_trained(run_dir, "resume")
     typed = [key for key in given if key not in FREE]
-    if typed and (changed := _changes(written(old), written(config))):
+    if typed and (changed := _changes(written(old), written(config), typed)):
         differ = (key for key in typed if any(line.startswith(f"{key} ") for line in changed))
         key = next(differ, typed[0])
         raise UsageError(f"{key}={given[key]}: {ONLY}; resume={run_dir} has its own")
@@ -305,13 +306,16 @@ def refuse_edits(config: DictConfig, run_dir: Path) -> None:
         raise UsageError(f"{run_dir / 'config.yaml'}: {', '.join(changed)}; put it back: {ONLY}")
 
 
-def _changes(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
+def _changes(
+    then: Mapping[str, Any], now: Mapping[str, Any], typed: Sequence[str] = ()
+) -> list[str]:
     """Lines "KEY was A and is B", by full keys, of the settings that stay for the whole run.
 
     A part occurs several times in a configuration: its shortest key names a change.
     """
     changed: dict[str, str] = {}
-    for key in sorted({*now, *then} - {*MAY_DIFFER}, key=lambda key: (key.count("."), key)):
+    fixed = {*now, *then} - MAY_DIFFER - FOLLOW.difference(typed)
+    for key in sorted(fixed, key=lambda key: (key.count("."), key)):
         before, after = then.get(key, "absent"), now.get(key, "absent")
         if before != after:
             line = f"was {before} and is {after}"

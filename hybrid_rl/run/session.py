@@ -303,7 +303,7 @@ def failure_line(ends: Sequence[End], left: int, checkpoint: int | None) -> str:
         return f"{words}; the others went on to the end"
     if checkpoint is None:
         return f"{words}; there is no checkpoint"
-    mend = "fix a reward that is not finite and resume it, or begin again with a lower learning rate"
+    mend = "fix what fails and resume it, or begin again with a lower learning rate"
     return f"{words}; checkpoint {checkpoint} is intact: {mend}"
 
 

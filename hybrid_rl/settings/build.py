@@ -35,8 +35,8 @@ from hybrid_rl.settings.values import (
     PAID,
     SECTIONS,
     check,
-    random_decisions,
     set_schedules,
+    shortened,
     time_limit,
 )
 from hybrid_rl.settings.words import forced, listed, name, plain, typed_values
@@ -142,11 +142,11 @@ def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
         asks = [text for text in overrides if name(text) == str(error.full_key).split(".")[0]]
         lines = [f"{text}: {config.algo} has no {key}" for text in asks for key in lacks]
         raise UsageError([explain(error), *lines][-1]) from error
-    for helper in ("sweep", "policy_learning"):
+    for helper in ("sweep", "policy_learning", "many_envs"):
         values.pop(helper, None)
     words = (text for text in overrides if not re.match(r"\+*(sweep|hydra)\.|-", text))
     values["recipe"] = [re.sub(r"\$\{([^}]*)\}", r"$(\1)", text) for text in words]  # no references
-    values["random_steps"] = random_decisions(values, typed_values(overrides))
+    values = shortened(values, typed_values(overrides))
     if values["task"] in ("gymnasium", "playground", "robot"):  # of many environments
         names = (values["env"].get(key) for key in ("make", "id", "name"))
         values["task"] = re.sub(r"[^A-Za-z0-9_.-]", "_", str(next(filter(None, names), "_")))

@@ -77,15 +77,19 @@ def time_limit(env: External | Robot, given: Mapping[str, Any]) -> dict[str, int
     return {"steps": -(-env.known.steps // given.get("action_repeat", 1))}
 
 
-def random_decisions(values: Mapping[str, Any], given: Mapping[str, str]) -> Any:
-    """`random_steps`: half of `total_steps` at most, where the user gave these and not those.
+def shortened(values: Mapping[str, Any], given: Mapping[str, str]) -> dict[str, Any]:
+    """`values` of a configuration, for a run that is shorter than the method's.
 
-    values: of the configuration; given: overrides of the user, key -> value.
+    Where the user gave `total_steps`, at most half of these are random, and an evaluation follows
+    at most a tenth of them, unless he gave that, too. given: his overrides, key -> value.
     """
-    random, total = values["random_steps"], values["total_steps"]
-    if "total_steps" not in given or {"random_steps", "model_random_steps"} & given.keys():
-        return random
-    return min(random, (total + 1) // 2) if type(random) is type(total) is int else random
+    found, total = dict(values), values["total_steps"]
+    named = {"random_steps" if key == "model_random_steps" else key for key in given}
+    if "total_steps" in named and type(total) is int:
+        for key, parts in {"random_steps": 2, "eval_every": 10}.items():
+            if key not in named and type(found[key]) is int:
+                found[key] = min(found[key], -(-total // parts))
+    return found
 
 
 def set_schedules(learners: DictConfig, decisions: int) -> None:

@@ -14,6 +14,8 @@ from hosted import Count, counting
 
 from hybrid_rl.envs.adapters.external import Copies, External
 from hybrid_rl.errors import UsageError, WorldError
+from hybrid_rl.fields import FieldError
+from hybrid_rl.rewards.aim import Aim
 from hybrid_rl.types import Spec
 
 STEPS = 5  # decisions of an episode
@@ -58,6 +60,17 @@ def test_spaces_of_any_form_are_flattened():
     assert (odd.spec, odd.parts) == (Spec(obs=7, act=2, dt=0.02), "a [4], b [3]")
     np.testing.assert_array_equal(odd.flat({"b": 1, "a": np.ones((2, 2))}), [1, 1, 1, 1, 0, 1, 0])
     assert counting().parts == ""
+
+
+def test_goals_are_for_what_its_class_measures():
+    class Measured(Count):
+        def quantities(self, obs: jax.Array) -> dict[str, jax.Array]:
+            return {"episode": obs[0]}
+
+    goal = Aim(External(make=Measured), "episode", target=3.0)
+    assert goal.reward_of(jnp.zeros(2), jnp.zeros(1), jnp.array([1.0, 0.0])) < 0
+    with pytest.raises(FieldError, match="needs an environment with `quantities`"):
+        Aim(counting(), "episode", target=3.0)
 
 
 def test_an_action_of_whole_numbers_is_the_nearest():

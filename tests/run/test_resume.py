@@ -29,7 +29,7 @@ def halves(tmp_path_factory):
     """Runs of half its length; the first is of the same seed."""
     folders = [tmp_path_factory.mktemp("half") / str(seed) for seed in range(3)]
     for seed, folder in enumerate(folders):
-        run(folder, *HYBRID, "total_steps=300", f"seed={seed}")
+        run(folder, *HYBRID, "total_steps=300", "eval_every=300", f"seed={seed}")
     return folders
 
 
@@ -103,7 +103,7 @@ def test_a_short_run_is_made_longer_with_its_settings_repeated():
 
 def test_without_replay_it_goes_on_and_says_so(whole, tmp_path, capsys):
     folder = tmp_path / "run"
-    run(folder, *HYBRID, "checkpoint_replay=false", "total_steps=300")
+    run(folder, *HYBRID, "checkpoint_replay=false", "total_steps=300", "eval_every=300")
     listed = json.loads((folder / "checkpoints" / "300" / "leaves.json").read_text())
     assert not [name for name in listed if name.startswith("memory")]
     assert call_train(f"resume={folder}", "total_steps=600") == 0
@@ -123,7 +123,7 @@ def test_seeds_side_by_side_are_the_seeds_alone(halves, tmp_path):
     observations and actions are small sums of entries of about 1: in units of 1. An evaluation with
     the planner is a whole episode more, from parameters that differ already: by 1e-2, not compared.
     """
-    run(tmp_path / "run", *HYBRID, "total_steps=300", "num_seeds=3")
+    run(tmp_path / "run", *HYBRID, "total_steps=300", "eval_every=300", "num_seeds=3")
     together = interrupt.rows(tmp_path / "run")
     for seed, alone in enumerate(halves):
         ours, theirs = [r for r in together if r["seed"] == seed], interrupt.rows(alone)

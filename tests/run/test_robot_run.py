@@ -27,6 +27,7 @@ from hybrid_rl.tools.stand_in import Physics
 from hybrid_rl.types import Spec
 
 LINE = ["task=robot", "env.make=hybrid_rl.envs.adapters.stand_in:Cartpole", "algo=sac"]
+LINE += ["eval_every=100"]
 SMALL = [*LINE, "policy.hidden=[8]", "critic.hidden=[8]", "policy_learner.batch_size=8"]
 SPEC = Spec(Cartpole.obs, len(Cartpole.low), Cartpole.dt)
 
