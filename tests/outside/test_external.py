@@ -67,10 +67,12 @@ def test_goals_are_for_what_its_class_measures():
         def quantities(self, obs: jax.Array) -> dict[str, jax.Array]:
             return {"episode": obs[0]}
 
-    goal = Aim(External(make=Measured), "episode", target=3.0)
+    measured: Any = External(make=Measured)
+    without: Any = counting()
+    goal = Aim(measured, "episode", target=3.0)
     assert goal.reward_of(jnp.zeros(2), jnp.zeros(1), jnp.array([1.0, 0.0])) < 0
     with pytest.raises(FieldError, match="needs an environment with `quantities`"):
-        Aim(counting(), "episode", target=3.0)
+        Aim(without, "episode", target=3.0)
 
 
 def test_an_action_of_whole_numbers_is_the_nearest():
