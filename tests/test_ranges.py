@@ -20,7 +20,6 @@ from hybrid_rl.controllers.gradient import GradientController
 from hybrid_rl.controllers.sampling import SamplingController
 from hybrid_rl.core.domain import Box
 from hybrid_rl.critics.categorical_q import CategoricalQ
-from hybrid_rl.critics.ensemble_q import EnsembleQ
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.envs.quadcopter import Quadcopter
@@ -179,7 +178,6 @@ TOGETHER = [  # what is made, and how the line begins, behind the name of the pa
         r"next_state=true: .*reward_discount=0",
     ),
     (branches(steps=3, value_steps=4), "value_steps=4: .*steps=3"),
-    (lambda: EnsembleQ(pessimism=-1), "pessimism=-1"),
     (lambda: CategoricalQ(hidden=(8, 16)), r"hidden=\[8, 16\]"),
     (lambda: UnitGaussian(hidden=()), r"hidden=\[\]"),
     (lambda: Gaussian(layer_norm="scale"), "layer_norm=scale"),

@@ -1,8 +1,4 @@
-"""Q(x, u): an ensemble of action values, reduced to their minimum or to mean - pessimism * std.
-
-The minimum of an ensemble is that of Fujimoto et al. 2018, eq. (10); of two members it equals the
-mean minus one standard deviation, and a random pair of many members has mean - 0.56 std as its
-expected minimum (Chen et al. 2021, REDQ, where members are normally distributed).
+"""Q(x, u): the minimum of an ensemble of action values (Fujimoto et al. 2018, eq. (10)).
 
 With `scale` the networks' outputs are in units of the largest return that the rewards so far allow,
 rms(reward) / (1 - discount), so that a first step of learning has the size of a value; their last
@@ -17,7 +13,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import statistics
-from hybrid_rl.fields import Count, NotNegative, part
+from hybrid_rl.fields import Count, part
 from hybrid_rl.networks import MLP, Activation, LayerNorm, Widths, ensemble_apply, ensemble_init
 from hybrid_rl.types import Spec
 
@@ -30,7 +26,6 @@ class EnsembleQ:
     activation: Activation = "relu"
     members: Count = 2
     layer_norm: LayerNorm = False  # keeps many updates per decision stable (Hiraoka et al. 2022)
-    pessimism: NotNegative | None = None  # [std of the members]; None: their minimum
     normalise: bool = False
     scale: bool = False
 
@@ -60,8 +55,5 @@ class EnsembleQ:
         return q * jax.lax.stop_gradient(params["value"].magnitude[0]) if self.scale else q
 
     def value(self, params: dict[str, Any], x: Array, u: Array) -> Array:
-        """Q [...], reduced over the members."""
-        q = self.all(params, x, u)
-        if self.pessimism is None:
-            return q.min(0)
-        return q.mean(0) - self.pessimism * jnp.sqrt(q.var(0) + 1e-8)  # smooth where all are equal
+        """Q [...], the minimum over the members."""
+        return self.all(params, x, u).min(0)
