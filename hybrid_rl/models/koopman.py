@@ -1,8 +1,8 @@
 """A Koopman operator: x' = K s(x, u), linear in lifted coordinates x = z(o).
 
-    s = (x, u) or (x, u, x_i u, ...),   K = [A B]
+    s = (x, u),   K = [A B]
 
-K is discrete in time, so that it needs no matrix logarithm. With products x_i u it is bilinear.
+K is discrete in time, so that it needs no matrix logarithm.
 Source: thesis eq. (2.9)-(2.11) and (7.2).
 """
 
@@ -13,7 +13,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import least_squares
-from hybrid_rl.fields import Natural, Positive, part
+from hybrid_rl.fields import Positive, part
 from hybrid_rl.protocols import Features
 from hybrid_rl.types import Spec
 
@@ -23,16 +23,13 @@ class Koopman:
     """A linear model of `features`."""
 
     features: Features
-    products: tuple[Natural, ...] = ()  # i of the regressors x_i u; (): linear
     bound: Positive = 1e4  # of |x_i|: predictions of a poor K stay finite
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Features, K [n, r] = [I 0] and its "spread" [r, r]. The key is consumed."""
         features = self.features.init(key, spec)
         n = jax.eval_shape(self.features, features, jnp.zeros(spec.obs)).size
-        if max(self.products, default=0) >= n:
-            raise ValueError(f"model.products={list(self.products)}: x has entries 0 to {n - 1}")
-        r = n + spec.act * (1 + len(self.products))
+        r = n + spec.act
         return {"features": features, "K": jnp.eye(n, r), "spread": jnp.eye(r)}
 
     def lift(self, params: dict[str, Any], obs: Array) -> Array:
@@ -41,7 +38,7 @@ class Koopman:
 
     def regressors(self, params: dict[str, Any], x: Array, u: Array) -> Array:
         """s [r] at x [n] and u [m]."""
-        return jnp.concatenate([x, u, *(x[i] * u for i in self.products)])
+        return jnp.concatenate([x, u])
 
     def step(self, params: dict[str, Any], x: Array, u: Array) -> Array:
         """The next x [n], clipped to the bound."""
@@ -49,6 +46,5 @@ class Koopman:
 
     def std(self, params: dict[str, Any], x: Array) -> Array:
         """Standard deviation [n] of K s at x [n] without action, in units of the noise's."""
-        m = (params["K"].shape[1] - x.size) // (1 + len(self.products))
-        s = self.regressors(params, x, jnp.zeros(m))
+        s = self.regressors(params, x, jnp.zeros(params["K"].shape[1] - x.size))
         return jnp.broadcast_to(jnp.sqrt(least_squares.leverage(params["spread"], s)), x.shape)

@@ -73,26 +73,25 @@ def test_learning_ends_and_k0_is_random_in_continuous_time() -> None:
     np.testing.assert_allclose(nothing, 0, atol=1e-7)
 
 
-def test_products_make_the_model_bilinear() -> None:
-    """s = (x, u, x_1 u); K of the bilinear system is recovered."""
-    model = Koopman(Monomials(), products=(1,))
-    truth = RNG.normal(size=(2, 4))
+def test_what_actions_do_is_recovered() -> None:
+    """K of a linear system."""
+    truth = RNG.normal(size=(2, 3))
     x, u = RNG.normal(size=(50, 2)), RNG.normal(size=(50, 1))
-    after = np.column_stack([x, u, x[:, 1:] * u]) @ truth.T
+    after = np.column_stack([x, u]) @ truth.T
     with jax.enable_x64(True):
-        learner = LeastSquares(model, prior=1e-12)
+        learner = LeastSquares(Koopman(Monomials()), prior=1e-12)
         state = learner.init(jax.random.key(0), SPEC)
         state, _ = jax.jit(learner.update)(state, Params(), batch(x, u, after), jax.random.key(0))
         np.testing.assert_allclose(state.model["K"], truth, atol=1e-9)
 
 
-INFORMED = Koopman(Monomials(terms=((0, 1),)), products=(0,))
+INFORMED = Koopman(Monomials(terms=((0, 1),)))
 
 
 def informed() -> dict[str, Any]:
     """Parameters of a model with some data."""
-    root = np.linalg.qr(RNG.normal(size=(9, 5)))[1] + 2 * np.eye(5)
-    known = {"K": RNG.normal(size=(3, 5)), "spread": np.linalg.inv(root)}
+    root = np.linalg.qr(RNG.normal(size=(9, 4)))[1] + 2 * np.eye(4)
+    known = {"K": RNG.normal(size=(3, 4)), "spread": np.linalg.inv(root)}
     return {**INFORMED.init(jax.random.key(0), SPEC), **jax.tree.map(jnp.asarray, known)}
 
 
@@ -110,7 +109,7 @@ def test_information_is_that_of_the_regression(criterion: str) -> None:
         np.testing.assert_allclose(to_go, [*np.cumsum(got[::-1])[::-1], 0], rtol=1e-12)
         U = np.linalg.inv(np.asarray(params.model["spread"]))
     for x, u, r in zip(np.asarray(path.x), np.asarray(path.u), got, strict=False):
-        s = np.concatenate([x, u, x[0] * u])
+        s = np.concatenate([x, u])
         more = U.T @ U + np.outer(s, s) / 0.1**2
         gain = np.linalg.slogdet(more)[1] - np.linalg.slogdet(U.T @ U)[1]
         assert r == pytest.approx(gain if criterion == "gain" else -1 / (s @ s + 1e-5), rel=1e-10)

@@ -16,6 +16,7 @@ from hybrid_rl.critics.ensemble_q import EnsembleQ
 from hybrid_rl.data.replay import Replay
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.errors import PartError, UsageError
+from hybrid_rl.features.network import Network
 from hybrid_rl.learners.least_squares import LeastSquares
 from hybrid_rl.learners.model import ModelLearner
 from hybrid_rl.learners.sac import SAC
@@ -184,12 +185,12 @@ def test_what_is_wrong_is_one_line(part, words):
     assert "\n" not in line
 
 
-WHOLE = LeastSquares(Koopman(Observables(), products=(7,)))
+WHOLE = LeastSquares(Koopman(Network((7,))))
 UNTRAINED = PredictedReturn(RewardNetwork((4,)))
 SOFT = SAC(TanhGaussian((8,)), EnsembleQ((8,)))
 OTHER = r"policy=TanhGaussian: PolicyController acts by it, but \S+ is float32\[4\] in it and float"
 UNFIT = [  # a controller, a learner, how the line begins
-    (Planner(), WHOLE, r"model\.products=\[7\]: x has entries 0 to 2"),  # by the library itself
+    (Planner(), WHOLE, r"features\.coordinates=\[7\]: must be some"),  # by the library itself
     (planning(UNTRAINED), Fit(), "PredictedReturn: reward=RewardNetwork: no learner trains"),
     (Planner(), None, "Planner: model=Line: no learner trains it"),
     (PolicyController(TanhGaussian((4,))), SOFT, OTHER),
