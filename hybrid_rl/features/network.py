@@ -23,7 +23,6 @@ class Network:
     size: Count = 40  # outputs of the network
     hidden: Widths = (20,)
     activation: Activation = "tanh"
-    include_state: bool = True  # false: z = net(y), whose trivial solution is z = 0
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Initial weights. The key is consumed."""
@@ -40,4 +39,4 @@ class Network:
         y = select(obs, self.coordinates)
         with precision.using("float32"):  # least squares follow
             z = apply(self._net, params["weights"], y)
-        return jnp.concatenate([y, z]) if self.include_state else z
+        return jnp.concatenate([y, z])

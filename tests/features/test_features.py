@@ -24,13 +24,10 @@ def test_monomials_are_products_of_scaled_coordinates() -> None:
 
 
 def test_a_network_contains_the_state() -> None:
-    """Unless it is left out; sizes follow."""
     features = Network((0, 2), 5, (8,))
     z = features(begun(features, SPEC), jnp.asarray(OBS, jnp.float32))
     np.testing.assert_allclose(z[:2], OBS[[0, 2]])
     assert z.shape == (7,)
-    alone = Network((0, 2), 5, (8,), include_state=False)
-    assert alone(begun(alone, SPEC), jnp.asarray(OBS)).shape == (5,)
 
 
 def lifted(obs, *words):
