@@ -14,7 +14,7 @@ from jax import Array
 
 from hybrid_rl.core import statistics
 from hybrid_rl.fields import Count, part
-from hybrid_rl.networks import MLP, Activation, LayerNorm, Widths, ensemble_apply, ensemble_init
+from hybrid_rl.networks import MLP, Activation, Widths, ensemble_apply, ensemble_init
 from hybrid_rl.types import Spec
 
 
@@ -25,7 +25,7 @@ class EnsembleQ:
     hidden: Widths = (256, 256)
     activation: Activation = "relu"
     members: Count = 2
-    layer_norm: LayerNorm = False  # keeps many updates per decision stable (Hiraoka et al. 2022)
+    layer_norm: bool = False  # keeps many updates per decision stable (Hiraoka et al. 2022)
     normalise: bool = False
     scale: bool = False
 

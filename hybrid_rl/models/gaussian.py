@@ -22,7 +22,7 @@ from jax import Array
 from hybrid_rl.core import circles, history, statistics
 from hybrid_rl.core.lifting import check_coordinates
 from hybrid_rl.fields import FILLED, Fraction, part
-from hybrid_rl.networks import MLP, Activation, LayerNorm, Widths, apply
+from hybrid_rl.networks import MLP, Activation, Widths, apply
 from hybrid_rl.types import Spec
 
 
@@ -37,7 +37,7 @@ class Gaussian:
     log_std_max: float = 2.0
     state_noise: bool = False  # s(x) instead of a constant
     inputs: Annotated[tuple[int, ...], FILLED] | None = None  # of x; None: all
-    layer_norm: LayerNorm = False  # of every hidden layer; or shift: without a learned scale
+    layer_norm: bool = False  # of every hidden layer
     input_noise: Fraction = 0.0  # of x in the loss, in s
     circles: bool = False  # predictions stay on the circles that were observed
 

@@ -20,10 +20,8 @@ from hybrid_rl.fields import Count, Must
 from hybrid_rl.networks import precision
 
 ACTIVATIONS = {"relu": nn.relu, "sin": jnp.sin, "silu": nn.silu, "tanh": jnp.tanh, "elu": nn.elu}
-LAYER_NORMS = (False, True, "shift")  # shift: without a learned scale
 Widths = tuple[Count, ...]  # types of a part's fields
 Activation = Annotated[str, Must(lambda a: a in ACTIVATIONS, f"be one of {', '.join(ACTIVATIONS)}")]
-LayerNorm = Annotated[bool | str, Must(lambda a: a in LAYER_NORMS, "be true, false or shift")]
 SPREAD = nn.initializers.variance_scaling(1 / 3, "fan_in", "uniform")
 
 
@@ -33,7 +31,7 @@ class MLP(nn.Module):
     hidden: Sequence[int]
     out: int
     activation: str = "relu"
-    layer_norm: bool | str = False  # one of LAYER_NORMS, of every hidden layer
+    layer_norm: bool = False  # of every hidden layer
     zero: bool = False  # the last layer starts at zero
     init = jax.jit(nn.Module.init, static_argnums=0)  # equal networks are traced one time
 
@@ -45,7 +43,7 @@ class MLP(nn.Module):
         for width in self.hidden:
             x = nn.Dense(width, kernel_init=SPREAD, dtype=kind, precision=of_products)(x)
             if self.layer_norm:
-                x = nn.LayerNorm(use_scale=self.layer_norm != "shift", dtype=kind)(x)
+                x = nn.LayerNorm(dtype=kind)(x)
             x = ACTIVATIONS[self.activation](x)
         last = nn.initializers.zeros if self.zero else SPREAD
         return nn.Dense(self.out, kernel_init=last, precision=of_products)(x)

@@ -22,7 +22,7 @@ from jax import Array
 
 from hybrid_rl.core import statistics
 from hybrid_rl.fields import Count, part
-from hybrid_rl.networks import MLP, Activation, LayerNorm, Widths, ensemble_apply, ensemble_init
+from hybrid_rl.networks import MLP, Activation, Widths, ensemble_apply, ensemble_init
 from hybrid_rl.types import Params, Spec
 
 CERTAIN = 20.0  # logit of a known end: a probability of 1 - 2e-9
@@ -37,7 +37,7 @@ class RewardNetwork:
     normalise: bool = True  # states by their running statistics
     ends: bool = False  # also where episodes end
     rule: object = None  # an environment whose `ended` gives the ends; without: they are learned
-    layer_norm: LayerNorm = False  # of every hidden layer; or shift: without a learned scale
+    layer_norm: bool = False  # of every hidden layer
     scale: bool = False  # targets by their running statistics
     members: Count = 1  # networks, whose mean is used
     next_state: bool = False  # x' is an input, too
