@@ -8,10 +8,10 @@
     u*_i = m g / (4 k_i): motor controls that hover, each with a quarter of the weight; m and k_i
     are those of the changed body, so u* may exceed 6 there: with a motor below 0.41, say
 
-o = (g, w, v) [9], for track (g, w, v, R'(p* - p)) [12]; a: four motor controls, u = 6 a, or
-u = 3 (a + 1) with bidirectional=false; start: level, w and v ~ U(-2, 2); for track also
-p* - p ~ U(-2, 2), and the target moves at a constant velocity ~ U(-1, 1) x target_speed. A decision
-is one step of 0.005 s; never terminates. success: |w|^2 + |v|^2 (track: + |p* - p|^2) < 0.01.
+o = (g, w, v) [9], for track (g, w, v, R'(p* - p)) [12]; a: four motor controls, u = 6 a; start:
+level, w and v ~ U(-2, 2); for track also p* - p ~ U(-2, 2), and the target moves at a constant
+velocity ~ U(-1, 1) x target_speed. A decision is one step of 0.005 s; never terminates. success:
+|w|^2 + |v|^2 (track: + |p* - p|^2) < 0.01.
 `wind` accelerates the quadcopter along the world's x axis, by a change of its velocity before each
 step.
 
@@ -45,7 +45,6 @@ class Quadcopter(Body):
 
     task: Literal["hover", "track"] = "hover"
     damping: bool = False  # air drag
-    bidirectional: bool = True  # negative thrust, too
     start_speed: NotNegative = 2.0  # [m/s, rad/s] largest in each direction
     target_distance: NotNegative = 2.0  # [m] largest in each direction; track only
     target_speed: NotNegative = 0.0  # [m/s] largest in each direction; track only
@@ -77,8 +76,7 @@ class Quadcopter(Body):
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state after one decision. action: [4] in [-1, 1]."""
-        action = jnp.clip(action, -1.0, 1.0)
-        u = MAX_CONTROL * (action if self.bidirectional else (action + 1) / 2)
+        u = MAX_CONTROL * jnp.clip(action, -1.0, 1.0)
         drag = jnp.full(6, float(self.damping), jnp.float32)
         data = state.data
         if self.wind:
@@ -99,8 +97,7 @@ class Quadcopter(Body):
         """Hovering, for track at the target."""
         down = jnp.asarray(self._body.model.opt.gravity)
         obs = jnp.concatenate((down, jnp.zeros(self.spec.obs - 3)))
-        u = self.hovering / MAX_CONTROL
-        return obs, jnp.asarray(u if self.bidirectional else 2 * u - 1)
+        return obs, jnp.asarray(self.hovering / MAX_CONTROL)
 
     def quantities(self, obs: Array) -> dict[str, Array]:
         """Angular velocity [rad/s] and velocity [m/s] in the body's frame at obs [o].

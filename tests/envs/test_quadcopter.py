@@ -78,8 +78,8 @@ WEAK = {"mass": 1.2, "payload": 0.1, "motors": np.array([0.8, 1.0, 1.2, 0.6])}
 
 @pytest.mark.parametrize(
     "given",
-    [{"task": "hover"}, {"task": "track"}, {"bidirectional": False}, WEAK],
-    ids=["hover", "track", "upwards", "weak"],
+    [{"task": "hover"}, {"task": "track"}, WEAK],
+    ids=["hover", "track", "weak"],
 )
 def test_at_equilibrium_it_hovers(given):
     """A weak motor at more control, so that there is no moment; the reward is 0 in any body."""
