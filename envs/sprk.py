@@ -4,8 +4,7 @@
     r = y, the measured contact, 0 or 1
 
 o = (p, v) [4] in m and m/s. Objects, theta, start, sensor errors and metrics are those of
-`contact_plane`; the contacts are MuJoCo's. With `rolling` a shell, I = 2/3 m r^2, rolls on a floor,
-driven by the torque (m + I / r^2) a r w. The ball is simulated in the frame of the objects, where
+`contact_plane`; the contacts are MuJoCo's. The ball is simulated in the frame of the objects, where
 they stand still:
 
     s~ = R(a)' (s - t) + c,   v~ = R(a)' v,   u~ = R(a)' u,   theta = (t, a)
@@ -37,7 +36,6 @@ from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, Simulator
 from hybrid_rl.fields import NotNegative, Positive, part
 from hybrid_rl.types import EnvState
 
-SHELL = 2 / 3  # moment of inertia of a shell / (m r^2)
 TIMESTEP = 1 / 300  # [s]
 READINGS, STEPS = 15, 2  # of the touch sensor in a decision; physics steps of a reading
 MEANS = 3  # of the accelerometer in a decision: 30 Hz
@@ -53,25 +51,22 @@ class Sprk(ContactPlane):
     radius: Positive = 0.0365  # [m] of the ball
     mass: Positive = 0.18  # [kg] m
     lag: NotNegative = 0.01  # [s] of the motor; 0: none
-    rolling: bool = False  # driven by torques on a floor, which it rolls on; else pushed
     sensor: Literal["touch", "accelerometer"] = "touch"
     threshold: Positive = 0.5  # [m/s^2] of the accelerometer
 
     @cached_property
     def asset(self) -> str:
         """MJCF text of the ball and the objects in their reference arrangement."""
-        accelerated = self.mass * (1 + SHELL if self.rolling else 1)
         words = {
             "TIMESTEP": TIMESTEP,
             "DYNAMICS": "filterexact" if self.lag else "none",
             "LAG": self.lag or 1.0,
-            "FORCE": accelerated * self.acceleration,
-            "DAMPING": accelerated * self.drag,
+            "FORCE": self.mass * self.acceleration,
+            "DAMPING": self.mass * self.drag,
             "RADIUS": self.radius,
             "MASS": self.mass,
-            "INERTIA": SHELL * self.mass * self.radius**2,
         }
-        text = mjcf.text("sprk_rolling.xml" if self.rolling else "sprk.xml")
+        text = mjcf.text("sprk.xml")
         for word, value in words.items():
             text = text.replace(word, str(value))
         geoms, pairs = solid(self.objects, "ball", HALF)
@@ -86,17 +81,9 @@ class Sprk(ContactPlane):
         """A random position and pose, those of `contact_plane` for the same key."""
         x, u, pose, noise = self._start(key)
         p = to_map(pose, x[:2], self.middle)
-        data = self._at(p, jnp.zeros(2))
+        data = self._body.reset(p, jnp.zeros(2))
         info = {"pose": pose, "action": u, "noise": noise}
         return self._seen(data, jnp.zeros(()), jnp.zeros(()), info)
-
-    def _at(self, p: Array, v: Array) -> PhysicsState:
-        """The ball at p [2] with velocity v [2], in the frame of the objects."""
-        if not self.rolling:
-            return self._body.reset(p, v)
-        spin = jnp.array([-v[1], v[0], 0.0]) / self.radius
-        qpos = jnp.concatenate([p, jnp.array([0.0, 1.0, 0.0, 0.0, 0.0])])
-        return self._body.reset(qpos, jnp.concatenate([v, jnp.zeros(1), spin]))
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state after one decision. action: [2] in [-1, 1]."""
