@@ -8,18 +8,17 @@ With reward=thesis the reward drops by 1.25 |e - s| at the moment of the grasp, 
 with a short horizon hovers over the block; with reward=joined it does not drop.
 
 e: point between the fingertips, b: block, s: target position of the block, one side above the base;
-F: wrench at the wrist [6]. o = (e, b, c, F) [13], c = 1 while the hand is commanded to close; with
-base_spread > 0 also s [16]. a: velocity of e along x, y, z, as fractions of 0.15 m/s, low-pass
-filtered with a time constant of 0.2 s and clipped at the workspace's limits. With grip=near the
-hand closes automatically within 1 cm of the block and opens within 1 cm of s, or if it loses the
-block; with grip=action it closes while a fourth action is positive. Its orientation is held. A
-decision is 0.1 s, 20 physics steps. Damped least squares give the joint velocities once a decision;
-the null space returns the arm to its initial posture. Terminates with success.
+F: wrench at the wrist [6]. o = (e, b, c, F) [13], c = 1 while the hand is commanded to close. a:
+velocity of e along x, y, z, as fractions of 0.15 m/s, low-pass filtered with a time constant of
+0.2 s and clipped at the workspace's limits. With grip=near the hand closes automatically within
+1 cm of the block and opens within 1 cm of s, or if it loses the block; with grip=action it closes
+while a fourth action is positive. Its orientation is held. A decision is 0.1 s, 20 physics steps.
+Damped least squares give the joint velocities once a decision; the null space returns the arm to
+its initial posture. Terminates with success.
 
-    observation=relative   o = (b - e, s - b, c) [7]
-    observation=stage      o = (d, c, height of b) [5],   d = s - b if c = 1, else b - e
+    observation=stage   o = (d, c, height of b) [5],   d = s - b if c = 1, else b - e
 
-In both the hand closes by the true positions, in spite of `episode.sensor_noise`.
+Then the hand closes by the true positions, in spite of `episode.sensor_noise`.
 
 grasped: commanded to close, both fingers touch the block's sides, and e is inside the block.
 success: block over base within 0.02 m, height within 0.01 m, released, slower than 0.05 m/s.
@@ -74,11 +73,10 @@ class PandaStack:
     block: tuple[float, float] = (0.45, -0.12)  # [m] centre of its initial positions
     block_spread: NotNegative = 0.05  # [m] largest offset along x and y
     block_turn: NotNegative = 0.1  # [rad] largest initial rotation
-    base: tuple[float, float] = (0.45, 0.12)  # [m] centre of its initial positions
-    base_spread: NotNegative = 0.0  # [m] largest offset along x and y
+    base: tuple[float, float] = (0.45, 0.12)  # [m] its initial position
     block_mass: Positive = 0.1  # [kg] of block and base
     block_friction: Positive = 1.0  # of all contacts
-    observation: Literal["thesis", "relative", "stage"] = "thesis"
+    observation: Literal["thesis", "stage"] = "thesis"
     reward: Literal["thesis", "joined"] = "thesis"
     penalty: NotNegative = 1e-6  # weight of wrench and action
     success_distance: Positive = 0.02  # [m] horizontal, block to base
@@ -90,8 +88,8 @@ class PandaStack:
     @property
     def spec(self) -> Spec:
         """Observation size, action size and decision interval."""
-        size = {"thesis": 16 if self.base_spread else 13, "relative": 7, "stage": 5}
-        return Spec(obs=size[self.observation], act=4 if self.grip == "action" else 3, dt=DT)
+        obs = 13 if self.observation == "thesis" else 5
+        return Spec(obs=obs, act=4 if self.grip == "action" else 3, dt=DT)
 
     @property
     def _body(self) -> Physics:
@@ -101,11 +99,13 @@ class PandaStack:
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""
-        key_block, key_turn, key_base = jax.random.split(key, 3)
+        key_block, key_turn = jax.random.split(key)
         turn = jax.random.uniform(key_turn, (), jnp.float32, -self.block_turn, self.block_turn)
         arm = jnp.asarray((*READY, OPEN, OPEN), jnp.float32)
-        block = _cube(self.block, self.block_spread, turn, key_block)
-        base = _cube(self.base, self.base_spread, jnp.float32(0.0), key_base)
+        spread = self.block_spread
+        away = jax.random.uniform(key_block, (2,), jnp.float32, -spread, spread)
+        block = _cube(away + jnp.asarray(self.block, jnp.float32), turn)
+        base = _cube(jnp.asarray(self.base, jnp.float32), jnp.float32(0.0))
         data = self._body.reset(jnp.concatenate((arm, block, base)), jnp.zeros(21, jnp.float32))
         info = {"velocity": jnp.zeros(3, jnp.float32), "closed": jnp.float32(0.0)}
         state = self._state(data, jnp.zeros(self.spec.act, jnp.float32), info)
@@ -154,9 +154,6 @@ class PandaStack:
         goal, block = self._goal(state.data)[None], state.data.qpos[BLOCK][None]
         if self.observation == "thesis":
             return obs[:, :6].reshape(-1, 2, 3)
-        if self.observation == "relative":
-            block = goal - obs[:, 3:6]
-            return jnp.stack((block - obs[:, :3], block), 1)
         return (jnp.where(obs[:, 3:4] > 0.5, goal, block) - obs[:, :3])[:, None]
 
     def _state(self, data: PhysicsState, action: Array, info: dict[str, Array]) -> EnvState:
@@ -171,12 +168,10 @@ class PandaStack:
         error = jnp.abs(block - goal)
         placed = (norm(error[:2]) < self.success_distance) & (error[2] < LEVEL)
         success = placed & (closed == 0) & (norm(data.qvel[BLOCK_SPEED]) < QUIET)
-        if self.observation == "relative":
-            parts = block - tool, goal - block, closed[None]
-        elif self.observation == "stage":
+        if self.observation == "stage":
             parts = jnp.where(closed > 0, goal - block, block - tool), closed[None], block[2:]
         else:
-            parts = tool, block, closed[None], wrench, *([goal] if self.base_spread else [])
+            parts = tool, block, closed[None], wrench
         metrics = {"success": success, "grasped": grasped, "distance": norm(block - goal)}
         metrics = {name: value.astype(jnp.float32) for name, value in metrics.items()}
         reward = stage - self.penalty * (norm(wrench) + norm(action))
@@ -184,9 +179,8 @@ class PandaStack:
         return EnvState(data, jnp.concatenate(parts), reward, ended, metrics=metrics, info=info)
 
 
-def _cube(middle: tuple[float, ...], spread: float, turn: Array, key: Array) -> Array:
-    """Position and quaternion [7] of a cube on the table, up to `spread` from `middle`."""
-    offset = jax.random.uniform(key, (2,), jnp.float32, -spread, spread)
+def _cube(at: Array, turn: Array) -> Array:
+    """Position and quaternion [7] of a cube on the table at x and y [2]."""
     height, zero = jnp.float32(SIDE / 2), jnp.float32(0.0)
     quat = jnp.stack((jnp.cos(turn / 2), zero, zero, jnp.sin(turn / 2)))
-    return jnp.concatenate((offset + jnp.asarray(middle, jnp.float32), height[None], quat))
+    return jnp.concatenate((at, height[None], quat))

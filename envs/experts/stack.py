@@ -32,10 +32,10 @@ LIFT_SPEED = 0.02  # [m/s] at the beginning of a lift
 class StackController:
     """Acts on the observation of `panda_stack`; the fields are those of the environment."""
 
-    base: tuple[float, float] = PandaStack.base  # [m] its position, unless it is observed
+    base: tuple[float, float] = PandaStack.base  # [m] its position
     speed: float = PandaStack.speed  # [m/s] at a = 1
     grip: Literal["near", "action"] = PandaStack.grip
-    observation: Literal["thesis", "relative", "stage"] = PandaStack.observation
+    observation: Literal["thesis", "stage"] = PandaStack.observation
 
     def init(self, spec: Spec) -> tuple[()]:
         """No state."""
@@ -70,14 +70,11 @@ class StackController:
 
     def _read(self, obs: Array) -> tuple[Array, Array, Array, Array]:
         """Vectors hand to block and block to target [3], the block's height, whether closed []."""
-        if self.observation == "relative":
-            return obs[:3], obs[3:6], 1.5 * SIDE - obs[5], obs[6] > 0
         if self.observation == "stage":  # a closed hand holds the block; a high block is stacked
             closed, none = obs[3] > 0, jnp.zeros(3).at[2].set(1.5 * SIDE - obs[4])
             to_block, to_goal = jnp.where(closed, 0.0, obs[:3]), jnp.where(closed, obs[:3], none)
             return to_block, to_goal, obs[4], closed
-        block = obs[3:6]
-        goal = obs[13:] if obs.size > 13 else jnp.array([*self.base, 1.5 * SIDE])
+        block, goal = obs[3:6], jnp.array([*self.base, 1.5 * SIDE])
         return block - obs[:3], goal - block, block[2], obs[6] > 0
 
     def greedy(self) -> "StackController":
