@@ -22,12 +22,12 @@ from jax import Array
 from hybrid_rl.core import statistics
 from hybrid_rl.fields import Inside, Positive, Several, part
 from hybrid_rl.networks import (
-    ACTIVATIONS,
     MLP,
     Activation,
     Perceptron,
     Widths,
     apply,
+    outputs,
     perceptron,
     side_by_side,
 )
@@ -60,19 +60,9 @@ class Deterministic:
 
     def unsquashed(self, params: dict[str, Any], x: Array) -> Array:
         """mu [..., m] at x [..., n]."""
-        return self.layers(params, x)[1]
-
-    def layers(self, params: dict[str, Any], x: Array) -> tuple[Array, Array]:
-        """The features [..., h] of which mu [..., m] is an affine function, and mu."""
-        x = statistics.inputs(params, x)
-        weights = params["weights"]
-        last = weights[f"Dense_{len(self.hidden)}"]
-        if self.hidden:
-            within = {name: layer for name, layer in weights.items() if layer is not last}
-            *hidden, width = self.hidden
-            net = MLP(hidden, width, self.activation)
-            x = ACTIVATIONS[self.activation](apply(net, {"params": within}, x))
-        return x, apply(MLP((), last["bias"].size), {"params": {"Dense_0": last}}, x)
+        weights = {"params": params["weights"]}
+        net = MLP(self.hidden, outputs(weights), self.activation)
+        return apply(net, weights, statistics.inputs(params, x))
 
     def perceptron(self, params: dict[str, Any], spec: Spec) -> Perceptron:
         """The policy as plain arrays."""
@@ -128,12 +118,11 @@ class Clones(Deterministic):
         each = jax.vmap(lambda key: super(Clones, self).init(key, spec)["weights"])(keys)
         return {**super().init(key, spec), "weights": each}
 
-    def layers(self, params: dict[str, Any], x: Array) -> tuple[Array, Array]:
-        """Features [..., h] and mu [..., m] of the first member; [..., members h] of the mean."""
+    def unsquashed(self, params: dict[str, Any], x: Array) -> Array:
+        """mu [..., m] of the first member, or their mean."""
         if self.acts == "first":
-            return super().layers(self._member(params, 0), x)
-        features, mu = self._layers_of_each(params, x)
-        return jnp.concatenate(list(features), axis=-1), mu.mean(0)
+            return super().unsquashed(self._member(params, 0), x)
+        return self._each(params, x).mean(0)
 
     def perceptron(self, params: dict[str, Any], spec: Spec) -> Perceptron:
         """The policy as plain arrays; the mean of the members is one network of all their units."""
@@ -145,14 +134,14 @@ class Clones(Deterministic):
     def _member(self, params: dict[str, Any], i: int) -> dict[str, Any]:
         return {**params, "weights": jax.tree.map(lambda each: each[i], params["weights"])}
 
-    def _layers_of_each(self, params: dict[str, Any], x: Array) -> tuple[Array, Array]:
-        """Features [members, ..., h] and mu [members, ..., m]."""
-        one = super().layers
+    def _each(self, params: dict[str, Any], x: Array) -> Array:
+        """mu [members, ..., m]."""
+        one = super().unsquashed
         return jax.vmap(lambda weights: one({**params, "weights": weights}, x))(params["weights"])
 
     def each(self, params: dict[str, Any], x: Array) -> Array:
         """The action of every member [members, ..., m] at x [..., n]."""
-        return self._squashed(self._layers_of_each(params, x)[1])
+        return self._squashed(self._each(params, x))
 
     def log_prob(self, params: dict[str, Any], x: Array, u: Array) -> Array:
         """The sum [...] over the members of the log-density of z."""
