@@ -16,10 +16,7 @@ MOST = 300  # characters of another library's message
 HINTS = {  # kind of error -> what to write instead
     "TracerBoolConversionError": "write jnp.where or jax.lax.cond instead of `if`",
     "TracerArrayConversionError": "write jnp instead of np",
-    "TracerIntegerConversionError": "an index or a size that an array gives is not known here",
     "ConcretizationTypeError": "write jnp instead of float(), int() and math",
-    "NonConcreteBooleanIndexError": "write jnp.where instead of a mask as index",
-    "SystemExit": "raise an error instead of sys.exit()",
     "FrozenInstanceError": "what changes belongs in the EnvState that step returns, as in info",
 }
 FAULTS = (Exception, SystemExit)  # what the user's code may raise; neither ends a run in silence
