@@ -5,7 +5,7 @@ import signal
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypedDict, Unpack
+from typing import TYPE_CHECKING, Any
 
 from omegaconf import DictConfig, OmegaConf
 
@@ -101,27 +101,13 @@ class Result(dict[str, Any]):
         return trained.of(self._run, self.folder)
 
 
-class OfAgent(TypedDict, total=False):
-    """Settings of a run of an agent; `run_of` says what a key that is left out means."""
-
-    total_steps: int
-    seed: int
-    num_seeds: int
-    run_dir: str | Path | None
-    name: str | None
-    log_every: int | None
-    eval_every: int | None
-    eval_episodes: int
-    checkpoint_every: int | None
-
-
 def train(
     method: Sequence[str] | DictConfig | Agent = (),
     *,
     config_dir: str | Path | None = None,
     on_row: OnRow | None = None,
     progress: bool = True,
-    **settings: Unpack[OfAgent],
+    **settings: Any,
 ) -> Result:
     """Train `method` to its end; returns what summary.json holds.
 
@@ -138,8 +124,7 @@ def train(
         on_row: called with each new row of metrics.jsonl, a dictionary. Once it returns False, or
             raises, the run ends with a checkpoint, and "finished" of the result is False.
         progress: False prints nothing.
-        settings: of an agent alone (run_of): total_steps, seed, num_seeds,
-            run_dir, name, log_every, eval_every, eval_episodes, checkpoint_every.
+        settings: of an agent alone, total_steps, seed, num_seeds, run_dir, ... (run_of).
 
     Raises:
         KeyboardInterrupt: after Ctrl-C and a checkpoint.
@@ -149,8 +134,7 @@ def train(
     """
     output = Output(on_row or (lambda row: None), progress, interrupt.as_call)
     if isinstance(method, Agent):
-        values: dict[str, Any] = {**settings}
-        run = run_of(method, **values)
+        run = run_of(method, **settings)
         result = Result(launch.train_built(run, output), run)
     else:
         given = {} if isinstance(method, DictConfig) else typed_values(method)

@@ -110,27 +110,21 @@ def test_settings_can_be_overridden_on_the_command_line() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "random"),
+    ("given", "random", "every"),
     [
-        (["total_steps=3001"], 1501),
-        (["total_steps=3001", "algo=sac"], 1501),  # of its own 10,000
-        (["total_steps=20000"], 5000),
-        (["total_steps=3000", "random_steps=4000"], 4000),
-        (["total_steps=3000", "model_random_steps=2000"], 2000),
-        (["settings=light"], 5000),
+        (["total_steps=3001"], 1501, 301),
+        (["total_steps=3001", "algo=sac"], 1501, 301),  # of its own 10,000
+        (["total_steps=20000"], 5000, 2000),
+        (["total_steps=3000", "random_steps=4000"], 4000, 300),
+        (["total_steps=3000", "model_random_steps=2000"], 2000, 300),
+        (["total_steps=3000", "eval_every=3000"], 1500, 3000),
+        (["settings=light"], 5000, 3000),
     ],
 )
-def test_random_decisions_leave_half_of_a_short_run_to_learning(given, random) -> None:
+def test_a_short_run_learns_for_half_of_it_and_has_ten_evaluations(given, random, every) -> None:
     """What the task, the settings and the method say holds for their own total_steps."""
-    assert config.load(["task=halfcheetah", *given]).random_steps == random
-
-
-@pytest.mark.parametrize(
-    ("given", "every"),
-    [(["total_steps=3001"], 301), (["total_steps=3001", "eval_every=3000"], 3000), ([], 5000)],
-)
-def test_a_short_run_has_ten_evaluations(given, every) -> None:
-    assert config.load(["task=halfcheetah", *given]).eval_every == every
+    c = config.load(["task=halfcheetah", *given])
+    assert (c.random_steps, c.eval_every) == (random, every)
 
 
 def test_how_a_hybrid_method_learns_is_one_override() -> None:

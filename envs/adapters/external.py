@@ -56,6 +56,8 @@ class External(Made):
     timeout_s: Positive | None = None  # [s] for a step, in processes; then the run ends
 
     def __post_init__(self) -> None:
+        if not (self.id or self.make):
+            raise UsageError("env.id: give an id of Gymnasium, or env.make=MODULE:CLASS")
         super().__post_init__()
         _ = self.known
 

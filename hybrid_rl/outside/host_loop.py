@@ -149,10 +149,7 @@ class HostProgram:
         self.copies: Copies | None = None  # made at the first call
 
     def __call__(self, state: AgentState, start: Array, rounds: Array) -> tuple[AgentState, Any]:
-        """Train for some rounds, as the program of `Loop`.
-
-        If the environment fails after the first decision, it ends early; the loop has the `fault`.
-        """
+        """Train for some rounds, as the program of `Loop`; fewer where the environment fails."""
         loop, envs, first, made = self.loop, self.loop.agent.num_envs, int(start), False
         each, count = (len(loop.seeds), envs), int(rounds) * (loop.fault is None)
         if self.copies is None:
@@ -166,13 +163,10 @@ class HostProgram:
             for i in range(count):
                 at = np.array([i, first + i * envs, made, sent.ticket], np.int32)
                 state, rows = self.act(state, rows, u, got, at)
-                u = sent.next(state.memory.count)
-                u = np.nan_to_num(u)  # a learner that has diverged must not end the others
+                u = np.nan_to_num(sent.next(state.memory.count))  # one that diverged ends no others
                 try:
                     stepped = self.copies.step(u)
                 except WorldError as fault:
-                    if not first + i:
-                        raise
                     loop.fault, count = fault, i
                     state = state.replace(memory=state.memory.replace(count=state.memory.count - 1))
                     break

@@ -40,7 +40,6 @@ from hybrid_rl.training.loop import Axis, Loop
 from hybrid_rl.version import BEGAN
 
 FREE = ("resume", "total_steps", "compile_cache", "precision")  # keys of a resumed run
-MAY_DIFFER = {*FREE, "run_dir", "logger"}
 FOLLOW = {"random_steps", "eval_every"}  # perhaps from total_steps
 ONLY = "with resume only total_steps and precision can be changed"
 
@@ -306,15 +305,13 @@ def refuse_edits(config: DictConfig, run_dir: Path) -> None:
         raise UsageError(f"{run_dir / 'config.yaml'}: {', '.join(changed)}; put it back: {ONLY}")
 
 
-def _changes(
-    then: Mapping[str, Any], now: Mapping[str, Any], typed: Sequence[str] = ()
-) -> list[str]:
+def _changes(then: dict, now: dict, typed: Sequence[str] = ()) -> list[str]:
     """Lines "KEY was A and is B", by full keys, of the settings that stay for the whole run.
 
     A part occurs several times in a configuration: its shortest key names a change.
     """
     changed: dict[str, str] = {}
-    fixed = {*now, *then} - MAY_DIFFER - FOLLOW.difference(typed)
+    fixed = {*now, *then} - {*FREE, "run_dir", "logger"} - FOLLOW.difference(typed)
     for key in sorted(fixed, key=lambda key: (key.count("."), key)):
         before, after = then.get(key, "absent"), now.get(key, "absent")
         if before != after:

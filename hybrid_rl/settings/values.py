@@ -78,11 +78,7 @@ def time_limit(env: External | Robot, given: Mapping[str, Any]) -> dict[str, int
 
 
 def shortened(values: Mapping[str, Any], given: Mapping[str, str]) -> dict[str, Any]:
-    """`values` of a configuration, for a run that is shorter than the method's.
-
-    Where the user gave `total_steps`, at most half of these are random, and an evaluation follows
-    at most a tenth of them, unless he gave that, too. given: his overrides, key -> value.
-    """
+    """`values`; if the overrides `given` make the run short, half are random, evaluations ten."""
     found, total = dict(values), values["total_steps"]
     named = {"random_steps" if key == "model_random_steps" else key for key in given}
     if "total_steps" in named and type(total) is int:

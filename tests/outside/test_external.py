@@ -98,6 +98,7 @@ def other(**members: Any) -> dict[str, Any]:
 @pytest.mark.parametrize(
     ("given", "line"),
     [
+        ({}, "give an id of Gymnasium, or env.make=MODULE:CLASS"),
         ({"id": "Hoper-v5"}, "env.id=Hoper-v5: NameNotFound: "),
         ({"id": "CartPole-v1"}, "CartPole-v1: has actions Discrete(2)"),
         ({"make": Odd, "kwargs": {"actions": Box(-np.inf, 1, (1,))}}, "finite bounds"),
