@@ -118,7 +118,7 @@ def _write_png(out: Path, pictures: Iterable[np.ndarray], fps: float) -> None:
 class Film(NamedTuple):
     """One episode, to be drawn."""
 
-    poses: np.ndarray  # [frames, nq]; of a Gymnasium environment pictures, which it drew itself
+    poses: Any  # [frames, nq]; of a Gymnasium environment a list of pictures, which it drew itself
     total: float  # undiscounted return
     success: bool | None  # at the end; None: the task has no measure of it
 
@@ -155,7 +155,7 @@ def film(world: Any, controller: Any, params: Any, key: Any) -> Film:
 def draw_film(world: Any, shown: Film, out: Path, width: int = 640, height: int = 480) -> None:
     """Write an episode of `world` to a file of one of SUFFIXES, in real time."""
     if isinstance(world.env, External):
-        write(out, len(shown.poses), 1 / world.spec.dt, lambda at, smooth: shown.poses[[*at]])
+        write(out, len(shown.poses), 1 / world.spec.dt, lambda at, _: [shown.poses[i] for i in at])
         return
     stride = _stride(world)
     rate = 1 / (world.spec.dt * stride)
@@ -189,4 +189,4 @@ def _outside(world: Any, controller: Any, params: Any, key: Any) -> Film:
         pictures.append(pictures[-1] if done else copies.picture())
     success = None if copies.success is None else bool(copies.success[0])
     copies.close()
-    return Film(np.array(pictures), total, success)
+    return Film(pictures, total, success)
