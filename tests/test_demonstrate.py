@@ -69,7 +69,7 @@ def test_the_task_is_changed_as_in_training(tmp_path, capsys):
     for wrong in ("env.sped=1", "planner.samples=3"):
         assert call_command(demonstrate.main, *line, wrong) == 2
     printed = capsys.readouterr().err
-    assert "env.sped: sac has no such key" in printed
+    assert "env.sped: task=sawyer_push has no such key" in printed
     assert "planner.samples=3: unknown argument; give KEY=VALUE with task" in printed
 
 

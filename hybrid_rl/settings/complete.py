@@ -164,7 +164,8 @@ def require(raw: dict[str, Any], path: str, choice: str | None = None, prefix: s
         hint = "`--cfg job` shows every key"
     near = nearest(last, known)
     hint = f"did you mean {near}?" if near else hint
-    raise UsageError(f"{prefix}{path}: {algo} has no such key; {hint}")
+    owner = f"task={raw.get('task')}" if path.startswith("env.") else algo
+    raise UsageError(f"{prefix}{path}: {owner} has no such key; {hint}")
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
