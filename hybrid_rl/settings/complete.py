@@ -149,10 +149,10 @@ def require(raw: dict[str, Any], path: str, choice: str | None = None, prefix: s
     """
     if select(raw, path) is not LACKING:
         return
-    algo = raw.get("algo")
+    owner = f"task={raw.get('task')}" if path.startswith("env.") else raw.get("algo")
     if choice:
         near = [f"; did you mean {path}@{key}={choice}?" for key in raw if key.endswith("_" + path)]
-        raise UsageError(f"{path}={choice}: {algo} has no {path}{''.join(near[:1])}")
+        raise UsageError(f"{path}={choice}: {owner} has no {path}{''.join(near[:1])}")
     above, _, last = path.rpartition(".")
     group = select(raw, above) if above else None
     if isinstance(group, dict):
@@ -164,7 +164,6 @@ def require(raw: dict[str, Any], path: str, choice: str | None = None, prefix: s
         hint = "`--cfg job` shows every key"
     near = nearest(last, known)
     hint = f"did you mean {near}?" if near else hint
-    owner = f"task={raw.get('task')}" if path.startswith("env.") else algo
     raise UsageError(f"{prefix}{path}: {owner} has no such key; {hint}")
 
 
