@@ -25,8 +25,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import (
     ROBOT,
@@ -102,12 +100,11 @@ def _out(given: dict[str, Any], named: str) -> Path:
 def _draw(world: "Episode", shown: "Film", given: dict[str, Any], out: Path, by: str) -> None:
     """Write an episode of `world`, and print its length and return; by: whose actions."""
     from hybrid_rl.analysis import drawing
-    from hybrid_rl.envs.mujoco.scenery import scene_of
 
     decisions, size = len(shown.poses) - 1, (given["width"], given["height"])
     if given["at"]:
-        poses = shown.poses[np.minimum(given["at"], decisions)]
-        drawing.draw_beside(scene_of(world.env), poses, out, *size)
+        at = [min(step, decisions) for step in given["at"]]
+        drawing.draw_beside(drawing.pictures(world, shown, at, *size), out)
         if late := [str(at) for at in given["at"] if at > decisions]:
             line = f"the episode ends after {decisions} decisions, shown instead"
             print(f"at={','.join(late)}: {line}")

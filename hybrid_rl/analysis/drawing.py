@@ -29,24 +29,10 @@ SUFFIXES = (".mp4", ".gif", ".png")
 GIF_FPS = 20.0  # [1/s] at most
 
 
-def draw(
-    scene: str, qpos: np.ndarray, out: str | Path, fps: float, width: int = 640, height: int = 480
-) -> Path:
-    """Writes a video, H.264 for .mp4, endless for .gif; for .png the picture halfway.
-
-    scene: MJCF text. qpos: [frames, nq]. fps: [1/s]. width, height: [pixels], even.
-    """
-
-    def pictures(shown: Sequence[int], smooth: bool) -> Iterable[np.ndarray]:
-        return frames(scene, qpos[list(shown)], width, height, smooth)
-
-    return write(Path(out), len(qpos), fps, pictures)
-
-
 def write(
     out: Path, count: int, fps: float, pictures: Callable[[Sequence[int], bool], Iterable[Any]]
 ) -> Path:
-    """Writes a file of one of SUFFIXES, as `draw`, of `count` pictures.
+    """Writes a video, H.264 for .mp4, endless for .gif; for .png the picture halfway of `count`.
 
     pictures: of (which of them, whether the picture is one of a .png) the pictures, even in size.
     """
@@ -64,12 +50,10 @@ def write(
     return out
 
 
-def draw_beside(
-    scene: str, qpos: np.ndarray, out: Path, width: int = 640, height: int = 480
-) -> None:
-    """Writes a .png of one picture beside the other, for each row of qpos [frames, nq]."""
+def draw_beside(pictures: Iterable[np.ndarray], out: Path) -> None:
+    """Writes a .png of one picture beside the other."""
     with replacing(out) as draft:
-        _write_png(draft, [np.hstack(list(frames(scene, qpos, width, height)))], 0.0)
+        _write_png(draft, [np.hstack(list(pictures))], 0.0)
 
 
 def frames(
@@ -154,12 +138,23 @@ def film(world: Any, controller: Any, params: Any, key: Any) -> Film:
 
 def draw_film(world: Any, shown: Film, out: Path, width: int = 640, height: int = 480) -> None:
     """Write an episode of `world` to a file of one of SUFFIXES, in real time."""
-    if isinstance(world.env, External):
-        write(out, len(shown.poses), 1 / world.spec.dt, lambda at, _: [shown.poses[i] for i in at])
-        return
     stride = _stride(world)
-    rate = 1 / (world.spec.dt * stride)
-    draw(scene_of(world.env), shown.poses[::stride], out, rate, width, height)
+    steps = range(0, len(shown.poses), stride)
+
+    def drawn(which: Sequence[int], smooth: bool) -> Iterable[np.ndarray]:
+        return pictures(world, shown, [steps[i] for i in which], width, height, smooth)
+
+    write(out, len(steps), 1 / (world.spec.dt * stride), drawn)
+
+
+def pictures(
+    world: Any, shown: Film, at: Sequence[int], width: int, height: int, smooth: bool = True
+) -> Iterable[np.ndarray]:
+    """An episode of `world` after these decisions."""
+    poses = [shown.poses[i] for i in at]
+    if isinstance(world.env, External):
+        return poses
+    return frames(scene_of(world.env), np.array(poses), width, height, smooth)
 
 
 def _stride(world: Any) -> int:

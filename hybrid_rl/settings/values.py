@@ -78,7 +78,7 @@ def time_limit(env: External | Robot, given: Mapping[str, Any]) -> dict[str, int
 
 
 def shortened(values: Mapping[str, Any], given: Mapping[str, str]) -> dict[str, Any]:
-    """`values`; if the overrides `given` make the run short, half are random, evaluations ten."""
+    """`values`; a run that overrides `given` shorten is half random, and evaluated ten times."""
     found, total = dict(values), values["total_steps"]
     named = {"random_steps" if key == "model_random_steps" else key for key in given}
     if "total_steps" in named and type(total) is int:

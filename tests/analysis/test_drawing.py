@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from functools import partial
 
 import imageio.v3 as iio
 import numpy as np
@@ -26,6 +27,10 @@ def positions(number=6):
     return np.linspace(-1, 1, number)[:, None]
 
 
+def written(out, fps=25):
+    return drawing.write(out, 6, fps, lambda at, _: drawing.frames(FIXED, positions()[at], 64, 48))
+
+
 def test_pictures_show_the_positions(draws):
     pictures = list(drawing.frames(FIXED, positions(3), 64, 48))
     assert all(picture.shape == (48, 64, 3) for picture in pictures)
@@ -42,7 +47,7 @@ def test_without_a_camera_of_its_own_the_robot_is_followed(draws):
 
 
 def test_an_mp4_plays_everywhere(tmp_path, draws):
-    out = drawing.draw(FIXED, positions(), tmp_path / "new" / "a.mp4", 25, 64, 48)
+    out = written(tmp_path / "new" / "a.mp4", 25)
     values = iio.immeta(out, plugin="pyav")
     assert (values["codec"], values["video_format"], values["fps"]) == ("h264", "yuv420p", 25)
     film = iio.imread(out, plugin="pyav")
@@ -52,7 +57,7 @@ def test_an_mp4_plays_everywhere(tmp_path, draws):
 
 
 def test_a_gif_goes_round_at_no_more_than_its_speed(tmp_path, draws):
-    out = drawing.draw(FIXED, positions(), tmp_path / "a.gif", 40, 64, 48)
+    out = written(tmp_path / "a.gif", 40)
     values = iio.immeta(out)
     assert (values["duration"], values["loop"]) == (50, 0)  # [ms]: every second of 40 a second
     film = iio.imread(out)
@@ -64,9 +69,9 @@ def test_a_gif_goes_round_at_no_more_than_its_speed(tmp_path, draws):
 def test_a_full_disk_is_one_line_and_no_file(tmp_path, monkeypatch, name):
     made = np.random.default_rng(0).integers(0, 255, (3, 48, 64, 3), "uint8")
     monkeypatch.setattr(drawing, "frames", lambda *_: iter(made))
-    draw = drawing.draw_beside if name == "beside.png" else drawing.draw
+    draw = partial(drawing.draw_beside, made) if name == "beside.png" else written
     with limited(100), pytest.raises(OSError, match="File too large") as caught:
-        draw("", np.zeros((3, 1)), tmp_path / name, 25)
+        draw(out=tmp_path / name)
     assert caught.value.filename == str(tmp_path / name)
     assert [*tmp_path.iterdir()] == []
 

@@ -63,16 +63,12 @@ def test_spaces_of_any_form_are_flattened():
 
 
 def test_goals_are_for_what_its_class_measures():
-    class Measured(Count):
-        def quantities(self, obs: jax.Array) -> dict[str, jax.Array]:
-            return {"episode": obs[0]}
-
-    measured: Any = External(make=Measured)
-    without: Any = counting()
-    goal = Aim(measured, "episode", target=3.0)
+    measured = other(quantities=lambda _, obs: {"episode": obs[0]})
+    worlds: list[Any] = [External(**measured), counting()]
+    goal = Aim(worlds[0], "episode", target=3.0)
     assert goal.reward_of(jnp.zeros(2), jnp.zeros(1), jnp.array([1.0, 0.0])) < 0
     with pytest.raises(FieldError, match="needs an environment with `quantities`"):
-        Aim(without, "episode", target=3.0)
+        Aim(worlds[1], "episode", target=3.0)
 
 
 def test_an_action_of_whole_numbers_is_the_nearest():

@@ -163,10 +163,10 @@ def test_a_run_is_saved_where_its_environment_fails(tmp_path, algo, left, saved)
     """In training, in an evaluation, and where it learns from each decision at once."""
     assert External(make="test_host_loop:Fragile").known  # the check is made once
     Fragile.left, folder = left, tmp_path / "run"
-    world = ["task=gymnasium", "env.make=test_host_loop:Fragile", "episode.steps=5"]
-    words = [*world, *algo.split(), "eval_every=20", "total_steps=40", "random_steps=4"]
+    words = ["task=gymnasium", "env.make=test_host_loop:Fragile", "episode.steps=5", *algo.split()]
+    words += ["eval_every=20", "total_steps=40", "random_steps=4", f"run_dir={folder}"]
     with pytest.raises(WorldError, match="NoneType"):
-        hybrid_rl.train([*words, f"run_dir={folder}"], progress=False)
+        hybrid_rl.train(words, progress=False)
     assert [each.name for each in (folder / "checkpoints").iterdir()] == [str(saved)]
     assert hybrid_rl.train([f"resume={folder}"], progress=False)["finished"]
 

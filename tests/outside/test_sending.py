@@ -96,13 +96,12 @@ def test_a_run_does_not_depend_on_where_its_calls_end(monkeypatch):
 
 
 def test_an_error_in_the_environment_ends_the_call(monkeypatch):
-    """The decision whose outcome is unknown is in neither memory nor metrics."""
     loop = compiled("sac", True, False)[0]
     monkeypatch.setattr(loop, "fault", None)
     state, metrics = run("sac", fail="error", calls=(ROUNDS, 1))
     with pytest.raises(WorldError, match="ValueError: motor off"):
         raise loop.fault
-    assert state.memory.count.tolist() == [1, 1]
+    assert state.memory.count.tolist() == [1, 1]  # without the decision that failed
     assert len(metrics["episode/done"]) == 1
     assert not sending._boxes
 
